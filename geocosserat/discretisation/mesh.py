@@ -1,0 +1,90 @@
+"""The rod cut into elements."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geocosserat.discretisation.quadrature import ReferenceElement, reference_element
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """Element edges (n+1,), a length, increasing; and the polynomial degree p in each element.
+
+    Nodes (n p + 1,) are Gauss-Lobatto, shared between neighbours; points (n p,) are Gauss.
+    """
+
+    edges: Array
+    reference: ReferenceElement
+
+    @property
+    def degree(self) -> int:
+        return self.reference.degree
+
+    @property
+    def elements(self) -> int:
+        return len(self.edges) - 1
+
+    @property
+    def half(self) -> Array:
+        """(n,) half the length of each element."""
+        return np.diff(self.edges) / 2
+
+    @property
+    def u_point(self) -> Array:
+        """(n p,) material coordinate of the Gauss points."""
+        return self._spread(self.reference.points).ravel()
+
+    @property
+    def u(self) -> Array:
+        """(n p + 1,) material coordinate of the nodes; element edges exactly."""
+        inner = self._spread(self.reference.nodes[:-1])
+        inner[:, 0] = self.edges[:-1]
+        return np.append(inner.ravel(), self.edges[-1])
+
+    @property
+    def mass(self) -> Array:
+        """(n p + 1,) lumped mass of each node, a length: the Gauss-Lobatto weights, added up at shared nodes."""
+        return self.gather(np.broadcast_to(self.reference.masses, (self.elements, self.degree + 1)))
+
+    @property
+    def weight(self) -> Array:
+        """(n p,) Gauss weights, a length."""
+        return np.outer(self.half, self.reference.weights).ravel()
+
+    def gather(self, local: Array) -> Array:
+        """Sum over elements of half length times a local nodal field, (n, p+1, ...) -> (n p + 1, ...)."""
+        n, p = self.elements, self.degree
+        scaled = local * self.half.reshape(-1, *[1] * (local.ndim - 1))
+        total = np.zeros((n * p + 1, *local.shape[2:]))
+        total[:-1] = scaled[:, :p].reshape(n * p, *local.shape[2:])
+        total[p::p] += scaled[:, p]
+        return total
+
+    def local_nodes(self) -> Array:
+        """(n, p+1) coordinates of each element's own nodes, the outer ones a hair inside: one-sided values at steps."""
+        x = self.reference.nodes * (1 - 1e-12)
+        return self._spread(x)
+
+    def _spread(self, x: Array) -> Array:
+        middle = (self.edges[:-1] + self.edges[1:]) / 2
+        return middle[:, None] + self.half[:, None] * x
+
+
+def make_mesh(length: float, elements: int, degree: int, steps: Iterable[float] = ()) -> Mesh:
+    """A mesh of [0, length] with at least `elements` elements and an edge on every step inside.
+
+    The pieces between steps are cut evenly, each into its share of the elements and at least one.
+    """
+    inside = sorted({float(x) for x in steps if 0 < x < length})
+    breaks = [0.0, *inside, length]
+    pieces = [
+        np.linspace(a, b, max(1, round(elements * (b - a) / length)) + 1)[:-1]
+        for a, b in zip(breaks[:-1], breaks[1:], strict=True)
+    ]
+    edges = np.concatenate([*pieces, [length]])
+    return Mesh(edges, reference_element(degree))

@@ -1,0 +1,69 @@
+"""C to a shared library, once, kept under a hash of everything that shaped it."""
+
+import hashlib
+import os
+import platform
+import shutil
+import subprocess
+import tempfile
+from functools import lru_cache
+from pathlib import Path
+
+from geocosserat.kernel.places import cache_folder
+
+FLAGS = ("-std=c99", "-O3", "-march=native", "-fno-math-errno", "-fPIC", "-shared")
+"""Strict floating point: no -ffast-math. Without errno, sqrt and the like need no call."""
+
+
+class CompileError(RuntimeError):
+    """The C compiler refused a generated kernel; the message has its words."""
+
+
+@lru_cache(maxsize=1)
+def compiler() -> str | None:
+    """Path of the C compiler ($CC, cc, gcc or clang), or None. CC="" says: use none."""
+    chosen = os.environ.get("CC")
+    if chosen is not None:
+        return shutil.which(chosen) if chosen else None
+    return next((path for name in ("cc", "gcc", "clang") if (path := shutil.which(name))), None)
+
+
+def _machine() -> str:
+    """What -march=native depends on."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+        features = next((line for line in lines if line.startswith(("flags", "Features"))), "")
+    except OSError:
+        features = platform.processor()
+    return platform.machine() + features
+
+
+def library_path(source: str, degree: int, tool: str) -> Path:
+    """Where the compiled kernel of this degree is, or will be."""
+    status = os.stat(tool)
+    parts = (source, str(degree), *FLAGS, os.path.realpath(tool), str(status.st_size), str(status.st_mtime_ns), _machine())
+    return cache_folder() / f"{hashlib.sha256(chr(0).join(parts).encode()).hexdigest()}.so"
+
+
+def compile_c(source: str, degree: int) -> Path:
+    """The shared library of a kernel at a degree, compiled now if it never was.
+
+    Two processes may compile the same kernel at once: each writes its own file, the last one stays, both are equal.
+
+    Raises CompileError when there is no compiler or it fails.
+    """
+    tool = compiler()
+    if tool is None:
+        raise CompileError("expected a C compiler, found none on the path; install one, or use the numpy backend")
+    target = library_path(source, degree, tool)
+    if target.exists():
+        return target
+    with tempfile.TemporaryDirectory(dir=target.parent, prefix=".compile-") as folder:
+        code, built = Path(folder) / "rod.c", Path(folder) / "rod.so"
+        code.write_text(source)
+        command = [tool, *FLAGS, f"-DDEGREE={degree}", str(code), "-o", str(built), "-lm"]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=600, check=False)
+        if done.returncode:
+            raise CompileError(f"{tool} failed on a generated kernel: {done.stderr.strip()[:2000]}")
+        os.replace(built, target)
+    return target

@@ -1,0 +1,39 @@
+"""What a solver may ask of a kernel. Solvers see this and nothing else: no rods."""
+
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+class Kernel(Protocol):
+    """A first-order system y' = f(t, y) with its linear algebra.
+
+    size: number of state entries. backend: "c" or "numpy".
+    """
+
+    @property
+    def size(self) -> int: ...
+
+    @property
+    def backend(self) -> str: ...
+
+    def rate(self, t: float, y: Array, out: Array) -> None:
+        """f(t, y) into out; y (size,) contiguous, not written."""
+
+    def jacobian(self, t: float, y: Array) -> Array:
+        """df/dy (size, size), row i the derivatives of component i."""
+
+    def prepare(self, t: float, y: Array) -> None:
+        """Linearise at (t, y), block by block, for the factors to come."""
+
+    def factor(self, gamma: float) -> None:
+        """Factor 1 - gamma df/dy at the state last prepared; linear in the number of elements.
+
+        Raises numpy.linalg.LinAlgError if a block is singular.
+        """
+
+    def solve(self, b: Array, out: Array) -> None:
+        """Solve with the factors; out may not be b."""

@@ -1,0 +1,62 @@
+"""Kernels that already exist as text: those that come with the program, then this user's own."""
+
+import hashlib
+import json
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from geocosserat.kernel.places import cache_folder, write_whole
+from geocosserat.shipped import shipped
+
+
+@dataclass(frozen=True)
+class KernelText:
+    """A kernel in both languages. origin: "shipped", "cache" or "generated"."""
+
+    identity: str
+    c: str
+    numpy: str
+    signature: dict[str, Any]
+    origin: str
+
+
+@lru_cache(maxsize=1)
+def _catalogue() -> dict[str, str]:
+    """Stem of the shipped files by identity."""
+    try:
+        folder = shipped("generated")
+    except FileNotFoundError:
+        return {}
+    return {json.loads(path.read_text())["identity"]: path.stem for path in sorted(folder.glob("*.json"))}
+
+
+def _digest(c: str, numpy: str) -> str:
+    return hashlib.sha256(c.encode() + b"\0" + numpy.encode()).hexdigest()
+
+
+def find(identity: str) -> KernelText | None:
+    """The kernel with this identity, or None. A damaged file in the cache counts as missing."""
+    stem = _catalogue().get(identity)
+    if stem is not None:
+        folder = shipped("generated")
+        texts = [(folder / f"{stem}{suffix}").read_text() for suffix in (".c", ".py", ".json")]
+        return KernelText(identity, texts[0], texts[1], json.loads(texts[2]), "shipped")
+    try:
+        record = json.loads((cache_folder() / f"{identity}.json").read_text())
+        if record["digest"] != _digest(record["c"], record["numpy"]):
+            return None
+        return KernelText(identity, record["c"], record["numpy"], record["signature"], "cache")
+    except (OSError, ValueError, KeyError):
+        return None
+
+
+def store(identity: str, c: str, numpy: str, signature: dict[str, Any]) -> KernelText:
+    """Keeps a newly generated kernel in the user's cache; a cache that cannot be written is not an error."""
+    record = {"c": c, "numpy": numpy, "signature": signature, "digest": _digest(c, numpy)}
+    try:
+        write_whole(cache_folder() / f"{identity}.json", json.dumps(record).encode())
+    except OSError:
+        pass
+    return KernelText(identity, c, numpy, signature, "generated")

@@ -1,0 +1,46 @@
+"""From text to a kernel that runs."""
+
+import importlib.machinery
+import importlib.util
+import types
+
+from geocosserat.discretisation.semidiscrete import SemiDiscrete
+from geocosserat.kernel.compile import compile_c
+from geocosserat.kernel.library import KernelText
+from geocosserat.kernel.native import NativeRod
+from geocosserat.kernel.pure import NumpyRod
+
+
+def _module(text: KernelText) -> types.ModuleType:
+    """The generated numpy module; its text comes from this program's own templates, never from a scene."""
+    name = f"geocosserat_kernel_{text.identity[:16]}"
+    loader = _TextLoader(text.numpy, name)
+    spec = importlib.util.spec_from_loader(name, loader)
+    assert spec is not None
+    module = importlib.util.module_from_spec(spec)
+    loader.exec_module(module)
+    return module
+
+
+class _TextLoader(importlib.machinery.SourceFileLoader):
+    """Loads a module from text, without a file and without bytecode left behind."""
+
+    def __init__(self, text: str, name: str) -> None:
+        super().__init__(name, f"<{name}>")
+        self._text = text.encode()
+
+    def get_data(self, path: str) -> bytes:
+        return self._text
+
+    def path_stats(self, path: str) -> dict[str, float]:
+        raise OSError("text without a file")
+
+
+def load(text: KernelText, rod: SemiDiscrete, backend: str) -> NativeRod | NumpyRod:
+    """The kernel of `rod` in C ("c") or numpy ("numpy").
+
+    Raises CompileError if C was asked for and cannot be compiled.
+    """
+    if backend == "c":
+        return NativeRod(compile_c(text.c, rod.mesh.degree), rod)
+    return NumpyRod(_module(text), rod)

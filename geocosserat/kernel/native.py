@@ -1,0 +1,132 @@
+"""A compiled kernel behind the kernel contract.
+
+cffi hands an array's address to C in a third of the time that ctypes needs (benchmarks/bindings.py).
+"""
+
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import cffi
+import numpy as np
+
+from geocosserat.discretisation.semidiscrete import SemiDiscrete
+from geocosserat.kernel.contract import Array
+
+DECLARATIONS = """
+typedef struct rod {
+    int elements;
+    const double *half, *mass, *u, *tables, *uniform, *point, *node, *base;
+    double *work;
+} rod;
+size_t rod_work(int elements);
+size_t rod_block(void);
+size_t rod_scratch(void);
+int rod_rate(const rod *r, double t, const double *y, double *dy);
+int rod_observe(const rod *r, double t, const double *y, double *twist, double *stress, double *energy);
+int rod_blocks(const rod *r, double t, const double *y, double *lower, double *diagonal, double *upper, double *scratch);
+int rod_dense(const rod *r, double t, const double *y, double *J, double *lower, double *diagonal, double *upper,
+              double *scratch);
+int rod_factor(int elements, double gamma, const double *lower, const double *diagonal, const double *upper,
+               double *factors, int *pivots);
+int rod_solve(int elements, const double *factors, const int *pivots, const double *b, double *x, double *scratch);
+"""
+
+
+@lru_cache(maxsize=1)
+def _interface() -> cffi.FFI:
+    ffi = cffi.FFI()
+    ffi.cdef(DECLARATIONS)
+    return ffi
+
+
+class NativeRod:
+    """The kernel of a semi-discrete rod in C. One call at a time: it owns its work space."""
+
+    backend = "c"
+
+    def __init__(self, library: Path, rod: SemiDiscrete) -> None:
+        self._ffi = ffi = _interface()
+        self._lib: Any = ffi.dlopen(str(library))
+        self._double, self._int = ffi.typeof("double[]"), ffi.typeof("int[]")
+        self.size = len(rod.state)
+        self._elements = rod.mesh.elements
+        self._d, self._points = rod.structure.group.dimension, rod.mesh.elements * rod.mesh.degree
+        arrays = {
+            "half": rod.mesh.half,
+            "mass": rod.mesh.mass,
+            "u": rod.mesh.u,
+            "tables": rod.tables,
+            "uniform": rod.uniform,
+            "point": rod.point,
+            "node": rod.node,
+            "base": rod.base,
+            "work": np.zeros(self._lib.rod_work(self._elements)),
+        }
+        self._kept = {name: np.ascontiguousarray(a, dtype=float) for name, a in arrays.items()}
+        self._rod = ffi.new("rod *")
+        self._rod.elements = self._elements
+        for name, array in self._kept.items():
+            setattr(self._rod, name, ffi.cast("double *", array.ctypes.data))
+        self._blocks: tuple[Array, Array, Array, Array] | None = None
+        self._factors: tuple[Array, Any, Array] | None = None
+
+    def _at(self, array: Array) -> Any:
+        return self._ffi.from_buffer(self._double, array)
+
+    def rate(self, t: float, y: Array, out: Array) -> None:
+        self._lib.rod_rate(self._rod, t, self._at(y), self._at(out))
+
+    def observe(self, t: float, y: Array) -> tuple[Array, Array, float]:
+        """Twist (d, nodes), stress (d, points), stored energy."""
+        twist, stress = np.empty((self._d, self._points + 1)), np.empty((self._d, self._points))
+        energy = np.empty(1)
+        self._lib.rod_observe(self._rod, t, self._at(y), self._at(twist), self._at(stress), self._at(energy))
+        return twist, stress, float(energy[0])
+
+    def _space(self) -> tuple[Array, Array, Array, Array]:
+        if self._blocks is None:
+            b = self._lib.rod_block()
+            lower, diagonal, upper = (np.empty((self._elements, b, b)) for _ in range(3))
+            self._blocks = lower, diagonal, upper, np.empty(self._lib.rod_scratch())
+        return self._blocks
+
+    def blocks(self, t: float, y: Array) -> tuple[Array, Array, Array]:
+        """Copies of the block-tridiagonal Jacobian, (elements, block, block) each."""
+        self.prepare(t, y)
+        lower, diagonal, upper, _ = self._space()
+        return lower.copy(), diagonal.copy(), upper.copy()
+
+    def jacobian(self, t: float, y: Array) -> Array:
+        space = [self._at(a) for a in self._space()]
+        J = np.empty(self.size * (self.size + 6))  # room behind the matrix for the eliminated orientations
+        self._lib.rod_dense(self._rod, t, self._at(y), self._at(J), *space)
+        return J[: self.size**2].reshape(self.size, self.size)
+
+    def prepare(self, t: float, y: Array) -> None:
+        self._lib.rod_blocks(self._rod, t, self._at(y), *(self._at(a) for a in self._space()))
+
+    def factor(self, gamma: float) -> None:
+        lower, diagonal, upper, _ = self._space()
+        if self._factors is None:
+            b = diagonal.shape[1]
+            self._factors = (
+                np.empty((3, *diagonal.shape)),
+                np.empty(self._elements * b, dtype=np.intc),
+                np.empty(self._elements * b),
+            )
+        factors, pivots, _ = self._factors
+        at = self._at
+        failed = self._lib.rod_factor(
+            self._elements, gamma, at(lower), at(diagonal), at(upper), at(factors), self._ffi.from_buffer(self._int, pivots)
+        )
+        if failed:
+            raise np.linalg.LinAlgError(f"the linear system of element {failed - 1} is singular")
+
+    def solve(self, b: Array, out: Array) -> None:
+        assert self._factors is not None, "factor comes before solve"
+        factors, pivots, scratch = self._factors
+        at = self._at
+        self._lib.rod_solve(
+            self._elements, at(factors), self._ffi.from_buffer(self._int, pivots), at(b), at(out), at(scratch)
+        )

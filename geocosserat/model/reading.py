@@ -1,0 +1,117 @@
+"""From a file, a text or a mapping to plain tables, numbers and words; nothing is interpreted yet."""
+
+from __future__ import annotations
+
+import os
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from geocosserat.model.errors import InputError
+from geocosserat.model.place import Found, Place, shown
+
+MAX_BYTES = 1_000_000
+MAX_LINE = 20_000
+MAX_LEVELS = 8
+
+
+@dataclass(frozen=True, slots=True)
+class Read:
+    """The plain values of a scene, its text (None for a mapping) and its file (None if there is none)."""
+
+    values: dict[str, Any]
+    text: str | None
+    path: str | None
+
+    @property
+    def file(self) -> str:
+        """The name for messages."""
+        return self.path or "scene"
+
+
+def read(scene: str | os.PathLike[str] | Mapping[str, Any]) -> Read:
+    """Read a scene from a file, from TOML text (a str with a line break in it) or from a mapping.
+
+    Raises InputError for a file that cannot be read, is larger than 1 MB or not UTF-8, for a line of more
+    than 20 000 characters and for invalid TOML.
+    """
+    if isinstance(scene, Mapping):
+        values = _plain(Place("scene"), scene, 0)
+        assert isinstance(values, dict)
+        return Read(values, None, None)
+    if isinstance(scene, str) and "\n" in scene:
+        return Read(_tables("scene", scene), scene, None)
+    if not isinstance(scene, str | os.PathLike):
+        raise InputError("a path, TOML text or a mapping", shown(scene), "pass one of these", key="scene")
+    path = os.fspath(scene)
+    text = _text(path)
+    return Read(_tables(path, text), text, path)
+
+
+def _text(path: str) -> str:
+    try:
+        with open(path, "rb") as file:
+            content = file.read(MAX_BYTES + 1)  # never more, whatever the path leads to
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise InputError("a readable file", reason.lower(), "check the path", file=shown_path(path)) from None
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        if len(content) > MAX_BYTES:
+            return " " * len(content)  # too large, which is said first
+        line = content[: error.start].count(b"\n") + 1
+        raise InputError(
+            "UTF-8 text", f"the byte 0x{content[error.start]:02x}", "save the file as UTF-8",
+            key=f"line {line}", file=path,
+        ) from None  # fmt: skip
+
+
+def shown_path(path: str) -> str:
+    """A path as it is if it prints on one line, else escaped."""
+    return path if path.isprintable() and path else ascii(path)
+
+
+def _tables(file: str, text: str) -> dict[str, Any]:
+    if len(text) > MAX_BYTES or len(text.encode("utf-8", "replace")) > MAX_BYTES:
+        raise InputError(
+            "at most 1 MB", "more", "a scene is a short text; is this the right file?", file=file
+        )
+    for number, line in enumerate(text.split("\n"), start=1):
+        if len(line) > MAX_LINE:
+            raise InputError(
+                f"lines of at most {MAX_LINE} characters", f"one of {len(line)}", "break the line",
+                key=f"line {number}", file=file,
+            )  # fmt: skip
+    try:
+        tables = tomllib.loads(text)
+    except RecursionError:
+        raise InputError(
+            f"at most {MAX_LEVELS} levels of nesting", "more", "write it flatter", file=file
+        ) from None
+    except ValueError as error:  # TOMLDecodeError, and integers of thousands of digits
+        raise InputError("valid TOML", str(error), "correct that line", file=file) from None
+    values = _plain(Place(file), tables, 0)
+    assert isinstance(values, dict)
+    return values
+
+
+def _plain(place: Place, value: Any, level: int) -> Any:
+    """A copy in Python's own types, no deeper than any scene is."""
+    if level > MAX_LEVELS:
+        raise place.wrong(f"at most {MAX_LEVELS} levels of nesting", Found("more"), "write it flatter")
+    match value:
+        case Mapping():
+            for key in value:
+                if not isinstance(key, str):
+                    raise place.wrong("keys that are words", key, "write the key as a string")
+            return {key: _plain(place.at(key), entry, level + 1) for key, entry in value.items()}
+        case np.ndarray() | np.generic():
+            return _plain(place, value.tolist(), level) if value.dtype.kind in "biuf" else value
+        case list() | tuple():
+            return [_plain(place.at(i), entry, level + 1) for i, entry in enumerate(value)]
+        case _:
+            return value

@@ -1,0 +1,164 @@
+"""What a scene says, as frozen records: the rod, its ends, its effects, the start and the run.
+
+Expressions keep the names of parameters, ``u`` (the material coordinate, 0 to length) and ``t``; the values
+of the parameters are in ``RodModel.parameters``. ``s`` has been rewritten to ``u/length``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Literal, TypeAlias
+
+from geocosserat.algebra.groups import Group
+from geocosserat.model.describe import matrix_text, named_text, number_text, vector_text
+from geocosserat.model.expressions import Expression
+
+Vector: TypeAlias = tuple[Expression, ...]
+Matrix: TypeAlias = tuple[tuple[Expression, ...], ...]
+Frame: TypeAlias = Literal["body", "world"]
+Backend: TypeAlias = Literal["auto", "c", "numpy"]
+
+
+@dataclass(frozen=True, slots=True)
+class End:
+    """One end of the rod.
+
+    ``kind``: "clamped" (does not move) or "free". ``force`` (force, 2 or 3 components) and ``torque``
+    (force x length, 1 component in the plane, 3 in space) are the load on a free end, expressions of ``t``;
+    None where there is none. ``frame``: "body" (the load turns with the end) or "world" (a dead load).
+    """
+
+    kind: str
+    force: Vector | None = None
+    torque: Vector | None = None
+    frame: Frame = "body"
+
+    def __str__(self) -> str:
+        load = [f"{name} {vector_text(value)}" for name, value in self._loads()]
+        return ", ".join([self.kind, *load, *([f"fixed in the {self.frame}"] if load else [])])
+
+    def _loads(self) -> Iterator[tuple[str, Vector]]:
+        if self.force is not None:
+            yield "force", self.force
+        if self.torque is not None:
+            yield "torque", self.torque
+
+
+@dataclass(frozen=True, slots=True)
+class Weight:
+    """A force density fixed in the world (force / length, 2 or 3 components), expressions of ``u``, ``t``."""
+
+    force: Vector
+
+    def __str__(self) -> str:
+        return f"weight {vector_text(self.force)} per length, fixed in the world"
+
+
+Effect: TypeAlias = Weight
+
+
+@dataclass(frozen=True, slots=True)
+class RodModel:
+    """The rod and what acts on it: everything the equations of motion are derived from.
+
+    ``length``: at rest. ``stiffness``: K, d x d, symmetric and positive definite, in the order of
+    ``group.strain`` (force for stretch and shear, force x length² for bend and twist), expressions of ``u``.
+    ``friction``: Γ, likewise in the order of ``group.twist`` (force x time / length² for translations, force
+    x time for rotations). ``reference``: the turn at rest, expressions of ``u``. ``frozen``: modes held so.
+    """
+
+    group: Group
+    length: float
+    stiffness: Matrix
+    friction: Matrix
+    reference: Vector
+    frozen: tuple[str, ...] = ()
+    left: End = End("clamped")
+    right: End = End("free")
+    effects: tuple[Effect, ...] = ()
+    parameters: Mapping[str, float] = field(default_factory=dict)
+
+    def __str__(self) -> str:
+        group = self.group
+        lines = [
+            f"rod in {group.name}, length {number_text(self.length)}",
+            f"  stiffness  {matrix_text(self.stiffness, group.strain)}",
+            f"  friction   {matrix_text(self.friction, group.twist)}",
+            f"  reference  {named_text(self.reference, group.strain)}",
+            *([f"  frozen     {', '.join(self.frozen)}"] if self.frozen else []),
+            f"  left end   {self.left}",
+            f"  right end  {self.right}",
+            *(f"  effect     {effect}" for effect in self.effects),
+        ]
+        if self.parameters:
+            values = (f"{name} = {number_text(value)}" for name, value in self.parameters.items())
+            lines.append(f"  parameters {', '.join(values)}")
+        return "\n".join(lines)
+
+
+@dataclass(frozen=True, slots=True)
+class Start:
+    """The rod at time 0.
+
+    ``strain``: the turn, expressions of ``u``. ``position`` of the left end (length, world). ``rotation`` of
+    the left end (radians): the angle in the plane, a rotation vector in space.
+    """
+
+    strain: Vector
+    position: tuple[float, ...]
+    rotation: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class RunSettings:
+    """How long and how accurately to simulate; None leaves a choice to the planner.
+
+    ``until``: final time. ``frames``: instants kept, 0 and ``until`` among them. ``accuracy``: position error
+    at the end relative to the length. ``rtol``, ``atol``: of the time integrator.
+    """
+
+    until: float
+    frames: int = 51
+    accuracy: float | None = None
+    elements: int | None = None
+    degree: int | None = None
+    method: str | None = None
+    rtol: float | None = None
+    atol: float | None = None
+    backend: Backend = "auto"
+
+    def __str__(self) -> str:
+        chosen = (
+            f"{name} {value if isinstance(value, str) else number_text(value)}"
+            for name in ("accuracy", "elements", "degree", "method", "rtol", "atol")
+            if (value := getattr(self, name)) is not None
+        )
+        return ", ".join(
+            [f"until {number_text(self.until)}", f"{self.frames} frames", *chosen, f"backend {self.backend}"]
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """A whole scene. ``source`` is TOML text that loads to this scene, ``path`` the file it came from."""
+
+    title: str
+    model: RodModel
+    start: Start
+    run: RunSettings
+    source: str
+    path: str | None = None
+
+    def __str__(self) -> str:
+        place = ", ".join(number_text(x) for x in self.start.position)
+        turn = ", ".join(number_text(x) for x in self.start.rotation)
+        return "\n".join(
+            [
+                self.title,
+                str(self.model),
+                f"  start      {named_text(self.start.strain, self.model.group.strain)}",
+                f"             left end at ({place}), rotation ({turn})",
+                f"  run        {self.run}",
+            ]
+        )

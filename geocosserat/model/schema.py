@@ -1,0 +1,45 @@
+"""Every key and word that a scene may hold; the readers and the settings share this one table."""
+
+from __future__ import annotations
+
+from typing import Final
+
+SCENE_KEYS: Final = ("title", "parameters", "rod", "start", "ends", "effects", "run")
+ROD_KEYS: Final = ("motion", "length", "stiffness", "friction", "reference", "frozen", "law")
+START_KEYS: Final = ("strain", "position", "angle", "rotation")
+ENDS_KEYS: Final = ("left", "right")
+END_KEYS: Final = ("kind", "force", "torque", "frame", "twist")
+RUN_KEYS: Final = (
+    "until", "frames", "accuracy", "elements", "degree", "method", "rtol", "atol", "backend",
+)  # fmt: skip
+EFFECT_KEYS: Final[dict[str, tuple[str, ...]]] = {
+    "weight": ("force",),
+    "follower": ("force",),
+    "couple": ("torque",),
+    "field": ("moment", "field"),
+    "flow": ("gradient", "velocity"),
+    "trap": ("stiffness", "centre"),
+}
+
+MOTIONS: Final = ("planar", "spatial")
+END_KINDS: Final = ("clamped", "free", "pinned", "driven", "joined")
+AVAILABLE_ENDS: Final = ("clamped", "free")
+AVAILABLE_EFFECTS: Final = ("weight",)
+FRAMES: Final = ("body", "world")
+METHODS: Final = ("cvode", "radau", "bdf", "lsoda")
+BACKENDS: Final = ("auto", "c", "numpy")
+
+MAX_EFFECTS: Final = 100
+MAX_FRAMES: Final = 100_000
+MAX_ELEMENTS: Final = 100_000
+MAX_DEGREE: Final = 64
+LEAST_ACCURACY: Final = 1e-15
+DEFAULT_ACCURACY: Final = 1e-6
+DEFAULT_FRAMES: Final = 51
+
+
+def scene_paths() -> tuple[str, ...]:
+    """Every dotted path that can be set whatever the scene holds: ``title``, ``rod.length`` ..."""
+    tables = {"rod": ROD_KEYS, "start": START_KEYS, "run": RUN_KEYS}
+    ends = [f"ends.{side}.{key}" for side in ENDS_KEYS for key in END_KEYS]
+    return ("title", *(f"{table}.{key}" for table, keys in tables.items() for key in keys), *ends)

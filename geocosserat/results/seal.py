@@ -1,0 +1,54 @@
+"""A checksum that a file carries inside itself and that covers all its other bytes.
+
+The file format's own library can hang on a damaged file, so damage must be found before that library sees a byte:
+the checksum is an ordinary text attribute of the file, found here by its first characters, and the sum is taken
+with its digits blank.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator
+
+MARK = "geocosserat-sha256:"
+_DIGITS = 64
+BLANK = MARK + "0" * _DIGITS
+
+
+def seal(image: bytes) -> bytes:
+    """The image with the digits of its one BLANK filled in.
+
+    Raises ValueError unless BLANK occurs exactly once.
+    """
+    count = image.count(BLANK.encode())
+    if count != 1:
+        raise ValueError(f"checksum: expected the text {BLANK!r} once in the file, found it {count} times; "
+                         f"take it out of the scene and the title")
+    at = image.index(BLANK.encode()) + len(MARK)
+    digits = hashlib.sha256(image).hexdigest().encode()
+    return b"".join((image[:at], digits, image[at + _DIGITS:]))
+
+
+def marked(sealed: bytes) -> bool:
+    """Whether the bytes carry a checksum at all, right or wrong."""
+    return MARK.encode() in sealed
+
+
+def intact(sealed: bytes) -> bool:
+    """Whether the bytes are those that `seal` returned."""
+    return any(_matches(sealed, at) for at in _places(sealed))
+
+
+def _places(sealed: bytes) -> Iterator[int]:
+    """Where checksums may stand: a scene could quote that of another file in a comment, so there may be several."""
+    at = sealed.find(MARK.encode())
+    while at >= 0:
+        yield at + len(MARK)
+        at = sealed.find(MARK.encode(), at + 1)
+
+
+def _matches(sealed: bytes, at: int) -> bool:
+    total = hashlib.sha256(memoryview(sealed)[:at])
+    total.update(b"0" * _DIGITS)
+    total.update(memoryview(sealed)[at + _DIGITS:])
+    return total.hexdigest().encode() == sealed[at:at + _DIGITS]

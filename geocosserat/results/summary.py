@@ -1,0 +1,129 @@
+"""A run in a few numbers: for programs (JSON types) and for people (a terminal)."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from geocosserat.results.atomic import write_bytes
+from geocosserat.results.ledger import ledger
+from geocosserat.results.solution import Solution
+
+
+def summary(
+    solution: Solution, files: Iterable[str | os.PathLike[str]] = (), *, scene: str | None = None
+) -> dict[str, Any]:
+    """The fields of ``run --json`` in plain JSON types; a number that is not finite becomes None.
+
+    `files` are the paths written; `scene` is the path of the scene, by default its title. `tip` is the right end
+    (u = length), `base` the left one, both at the last frame; `until` is the time of that frame.
+    """
+    fields = {
+        "scene": solution.title if scene is None else scene,
+        "title": solution.title,
+        "motion": solution.motion,
+        "unknowns": solution.unknowns,
+        "method": solution.method,
+        "elements": solution.elements,
+        "degree": solution.degree,
+        "backend": solution.backend,
+        "until": float(solution.time[-1]),
+        "frames": len(solution.time),
+        "reached": solution.reached,
+        "reason": solution.reason,
+        "tip": _end(solution, -1),
+        "base": _end(solution, 0),
+        "energy": {"start": float(solution.energy[0]), "end": float(solution.energy[-1])},
+        "ledger": asdict(ledger(solution)),
+        "error": {"requested": solution.requested, "estimated": solution.estimated},
+        "evaluations": dict(solution.evaluations),
+        "seconds": dict(solution.seconds),
+        "files": [os.fspath(file) for file in files],
+    }
+    finite: dict[str, Any] = _finite(fields)
+    return finite
+
+
+def write_summary(fields: Mapping[str, Any], path: str | os.PathLike[str]) -> Path:
+    """Write the fields as a JSON file, atomically. Raises FileError when it cannot be written."""
+    return write_bytes(path, (json.dumps(fields, indent=2, allow_nan=False) + "\n").encode())
+
+
+def print_summary(solution: Solution, console: Console, files: Iterable[str | os.PathLike[str]] = ()) -> None:
+    """Print what a reader wants to know first: where the ends are, whether the energy balances, the error, the cost."""
+    fields = summary(solution, files)
+    rows = [
+        ("rod", f"{fields['motion']}, {fields['unknowns']} unknowns "
+                f"({_count(fields['elements'], 'element')} of degree {fields['degree']})"),
+        ("time", _time(fields)),
+        ("tip", _place(fields["tip"])),
+        ("base", _place(fields["base"])),
+        ("energy", f"{_digits(fields['energy']['start'])} at the start, {_digits(fields['energy']['end'])} at the end"),
+        ("ledger", _ledger(fields["ledger"])),
+        ("error", f"estimated {_digits(fields['error']['estimated'], 2)}, "
+                  f"requested {_digits(fields['error']['requested'], 2)} (of the length)"),
+        ("cost", _cost(fields)),
+        *(("wrote", file) for file in fields["files"]),
+    ]
+    grid = Table.grid(padding=(0, 2))
+    for name, value in rows:
+        # Text, so that brackets in a title or a path are not taken for markup
+        grid.add_row(Text(name, style="dim"), Text(value, overflow="fold"))
+    console.print(Text(fields["title"], style="bold"))
+    console.print(grid)
+
+
+def _end(solution: Solution, node: int) -> dict[str, Any]:
+    end = {"position": solution.position[-1, node].tolist(), "rotation": solution.rotation[-1, node].tolist()}
+    return end if solution.angle is None else end | {"angle": float(solution.angle[-1, node])}
+
+
+def _finite(value: Any) -> Any:
+    """JSON knows neither NaN nor infinity."""
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, dict):
+        return {key: _finite(inner) for key, inner in value.items()}
+    return [_finite(inner) for inner in value] if isinstance(value, list) else value
+
+
+def _digits(value: float | None, digits: int = 10) -> str:
+    return "unknown" if value is None else f"{value:.{digits}g}"
+
+
+def _count(number: int, thing: str) -> str:
+    return f"{number} {thing}" if number == 1 else f"{number} {thing}s"
+
+
+def _place(end: Mapping[str, Any]) -> str:
+    position = "(" + ", ".join(_digits(x) for x in end["position"]) + ")"
+    if "angle" in end:
+        return f"{position}, angle {_digits(end['angle'])}"
+    tangent = "(" + ", ".join(_digits(row[0], 6) for row in end["rotation"]) + ")"
+    return f"{position}, normal to the section {tangent}"
+
+
+def _ledger(terms: Mapping[str, float | None]) -> str:
+    return (f"stored {_digits(terms['stored'], 6)} + dissipated {_digits(terms['dissipated'], 6)} "
+            f"= work {_digits(terms['work'], 6)}, but for {_digits(terms['residual'], 2)} of the largest")
+
+
+def _time(fields: Mapping[str, Any]) -> str:
+    until = f"until {_digits(fields['until'], 6)}, {_count(fields['frames'], 'frame')}"
+    return until if fields["reached"] else f"{until}; stopped early: {fields['reason']}"
+
+
+def _cost(fields: Mapping[str, Any]) -> str:
+    counts, seconds = fields["evaluations"], fields["seconds"]
+    spent = ", ".join(f"{name} {value:.3g} s" for name, value in seconds.items() if value)
+    return (f"{fields['method']}, {fields['backend']} backend: {_count(counts['steps'], 'step')}, "
+            f"{_count(counts['rate'], 'rate')}, {_count(counts['jacobian'], 'Jacobian')}; {spent or 'no time'}")
