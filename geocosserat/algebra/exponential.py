@@ -55,8 +55,11 @@ def dexp(group: Group, X: Array, c: Stumpff = stumpff) -> Array:
     c2, c3, c4, c5 = (c(k, s) for k in (2, 3, 4, 5))
     even, odd = (c4 - 3 * c5) / 2, (c3 - 2 * c4) / 2
     out: Array = (
-        _eye(group.dimension, X) - _scale(c2 + s * odd) * A + _scale(c3 + s * even) * A2
-        - _scale(odd) * (A2 @ A) + _scale(even) * (A2 @ A2)
+        _eye(group.dimension, X)
+        - _scale(c2 + s * odd) * A
+        + _scale(c3 + s * even) * A2
+        - _scale(odd) * (A2 @ A)
+        + _scale(even) * (A2 @ A2)
     )
     return out
 
@@ -115,7 +118,7 @@ def vector_from_rotation(R: Array) -> Array:
 
 def _square(group: Group, X: Array) -> Any:
     """Squared rotation angle of the components X."""
-    w = X[..., group.translations:]
+    w = X[..., group.translations :]
     return (w * w).sum(axis=-1)
 
 

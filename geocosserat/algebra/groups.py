@@ -167,14 +167,22 @@ def _basis(space: int) -> tuple[Array, ...]:
 
 
 SE2 = Group(
-    name="SE(2)", space=2, basis=_basis(2),
-    strain=("h1", "h2", "Pi"), twist=("v1", "v2", "Omega"),
-    stress=("F1", "F2", "M"), wrench=("f1", "f2", "m"),
+    name="SE(2)",
+    space=2,
+    basis=_basis(2),
+    strain=("h1", "h2", "Pi"),
+    twist=("v1", "v2", "Omega"),
+    stress=("F1", "F2", "M"),
+    wrench=("f1", "f2", "m"),
 )
 SE3 = Group(
-    name="SE(3)", space=3, basis=_basis(3),
-    strain=("h1", "h2", "h3", "Pi1", "Pi2", "Pi3"), twist=("v1", "v2", "v3", "Omega1", "Omega2", "Omega3"),
-    stress=("F1", "F2", "F3", "M1", "M2", "M3"), wrench=("f1", "f2", "f3", "m1", "m2", "m3"),
+    name="SE(3)",
+    space=3,
+    basis=_basis(3),
+    strain=("h1", "h2", "h3", "Pi1", "Pi2", "Pi3"),
+    twist=("v1", "v2", "v3", "Omega1", "Omega2", "Omega3"),
+    stress=("F1", "F2", "F3", "M1", "M2", "M3"),
+    wrench=("f1", "f2", "f3", "m1", "m2", "m3"),
 )
 
 

@@ -1,4 +1,4 @@
-"""Scene expressions as exact symbolic ones: decimals become rationals, so that terms cancel or vanish exactly."""
+"""Scene expressions as exact symbolic ones: decimals become rationals, so that terms cancel exactly."""
 
 from __future__ import annotations
 

@@ -15,8 +15,8 @@ _MOST_EXPANDED = 6
 def terms(e: sp.Expr) -> Terms:
     """The terms of e that do not cancel, as product of fields -> coefficient.
 
-    Coefficients keep the form in which the scene gives them unless multiplied out they are shorter. A function of
-    fields that is no polynomial (the sine of an angle) counts as one factor.
+    Coefficients keep the form in which the scene gives them unless multiplied out they are shorter. A
+    function of fields that is no polynomial (the sine of an angle) counts as one factor.
     """
     return {product: _shorter(c) for product, c in _terms(e).items() if not vanishes(c)}
 
@@ -27,7 +27,7 @@ def distributed(e: sp.Expr) -> sp.Expr:
 
 
 def vanishes(c: sp.Expr) -> bool:
-    """Whether an expression without fields is zero: structurally, or as a sum at two fixed points to 30 digits."""
+    """Whether an expression without fields is zero: as it stands, or as a sum at two points to 30 digits."""
     if not c.is_Add:
         return bool(c == 0)
     names = sorted(c.free_symbols, key=str)

@@ -11,7 +11,7 @@ from geocosserat.derivation.records import Equations
 
 @dataclass(frozen=True)
 class Formula:
-    """A formula of a heading, written three times."""
+    """A formula of a heading, written three times; ``text`` with ' and - for primes and minus signs."""
 
     text: str
     ascii: str

@@ -12,7 +12,7 @@ from geocosserat.derivation.orientation import axes_of, seen_in_frame
 from geocosserat.derivation.records import EndConditions, Equation, Vector
 from geocosserat.model.records import End
 
-# the power of the ends is <S, V> at the right minus <S, V> at the left, so a load on the left is minus the stress
+# the ends' power is <S, V> at the right minus <S, V> at the left: a load on the left is minus the stress
 _OUTWARD = {"left": -1, "right": 1}
 
 
@@ -32,11 +32,12 @@ def conditions(
         )
     seen = load(group, end)
     pairs = ((s, _OUTWARD[side] * x) for s, x in zip(stress, seen, strict=True))
-    return EndConditions(side, end.kind, position, seen, tuple(Equation(s, x) for s, x in pairs if s != 0 or x != 0))
+    equations = tuple(Equation(s, x) for s, x in pairs if s != 0 or x != 0)
+    return EndConditions(side, end.kind, position, seen, equations)
 
 
 def load(group: Group, end: End) -> Vector:
-    """Load on an end in moving-frame components: force, then torque (force x length); zeros where there is none."""
+    """Load on an end in moving-frame components: force, then torque (force x length); zeros if none."""
     force, torque = _world_or_body(group, end)
     if end.frame == "world":
         force = seen_in_frame(group, force)

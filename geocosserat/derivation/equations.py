@@ -1,7 +1,7 @@
 """The field equations of one rod, derived from its group and its laws: nothing in them is transcribed.
 
-From the structure constants: compatibility dE/dt = V' + ad_E V and balance S' + ad*_E S + j = 0. From the model: the
-stress S(E), the wrench j, the ends. A term, field or parameter that the scene does not have does not occur.
+From the structure constants: compatibility dE/dt = V' + ad_E V and balance S' + ad*_E S + j = 0. From the
+model: the stress S(E), the wrench j, the ends. What the scene lacks does not occur.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 import sympy as sp
 
-from geocosserat.algebra.groups import Array, Group
+from geocosserat.algebra.groups import Array
 from geocosserat.derivation.convert import exact, to_sympy
 from geocosserat.derivation.distribute import distributed
 from geocosserat.derivation.ends import axes_seen, conditions
@@ -25,8 +25,8 @@ from geocosserat.model.records import RodModel, Weight
 def derive(model: RodModel) -> FieldEquations:
     """The equations of that rod; algebra only, a fraction of a second.
 
-    Raises ValueError for frozen modes, kinds of end and effects that are not available, and ExpressionError for
-    coefficients that are infinite or not real.
+    Raises ValueError for frozen modes, kinds of end and effects that are not available, and ExpressionError
+    for coefficients that are infinite or not real.
     """
     _refuse_the_unavailable(model)
     group = model.group
@@ -39,7 +39,7 @@ def derive(model: RodModel) -> FieldEquations:
     strain = _sum(E, tuple(-e for e in reference))
     stress_values, drag = _times(stiffness, strain), _times(friction, V)
     weight = _sum((sp.S.Zero,) * group.space, *(_vector(effect.force) for effect in model.effects))
-    push = (*seen_in_frame(group, weight), *zero[group.space:])
+    push = (*seen_in_frame(group, weight), *zero[group.space :])
     wrench_values = tuple(p - d for p, d in zip(push, drag, strict=True))
     S = _where_present(fields(group.stress), stress_values)
     j = _where_present(fields(group.wrench), wrench_values)
@@ -74,17 +74,19 @@ def derive(model: RodModel) -> FieldEquations:
         motion=_equations(drag, motion),
         left=conditions(group, model.left, "left", sp.S.Zero, V, S),
         right=conditions(group, model.right, "right", exact(model.length), V, S),
-        energy=_pairing(strain, stress_values) / 2 if symmetric else None,
-        dissipation=_pairing(V, drag),
+        energy=_quadratic(stiffness / 2, strain) if symmetric else None,
+        dissipation=_quadratic(friction, V),
     )
 
 
 def _refuse_the_unavailable(model: RodModel) -> None:
     if model.frozen:
-        raise ValueError(f"frozen: expected no frozen modes, found {', '.join(model.frozen)}; not available yet")
+        found = ", ".join(model.frozen)
+        raise ValueError(f"frozen: expected no frozen modes, found {found}; not available yet, remove them")
     for effect in model.effects:
         if not isinstance(effect, Weight):
-            raise ValueError(f"effects: expected weight, found {type(effect).__name__}; not available yet")
+            found = type(effect).__name__
+            raise ValueError(f"effects: expected weight, found {found}; not available yet, remove it")
 
 
 def _vector(expressions: Iterable[Expression]) -> Vector:
@@ -112,8 +114,14 @@ def _slope(vector: Vector) -> Vector:
     return tuple(x.diff(U) for x in vector)
 
 
-def _pairing(left: Vector, right: Vector) -> sp.Expr:
-    return sp.Add(*(x * y for x, y in zip(left, right, strict=True)))
+def _quadratic(matrix: Array, vector: Vector) -> sp.Expr:
+    """The quadratic form of a matrix, each product of two components once."""
+    d = len(vector)
+    squares = (matrix[a, a] * vector[a] ** 2 for a in range(d))
+    products = (
+        (matrix[a, b] + matrix[b, a]) * vector[a] * vector[b] for a in range(d) for b in range(a + 1, d)
+    )
+    return sp.Add(*squares, *products)
 
 
 def _where_present(names: Vector, values: Vector) -> Vector:

@@ -18,7 +18,7 @@ LETTER: Final = {
     "stress": Formula("Σ", "S", r"\Sigma"),
     "wrench": Formula("j", "j", "j"),
 }
-WORLD_FORCE: Final = Formula(" + Rᵀ f", " + R^T f", " + R^{\\mathsf T} f")
+WORLD_FORCE: Final = Formula(" + Rᵀ f", " + R^T f", r" + R^{\mathsf T} f")
 NOTHING: Final = Formula("", "", "")
 ENERGY, DISSIPATION = field("epsilon"), field("delta")
 
@@ -37,24 +37,31 @@ def intrinsic(equations: FieldEquations) -> Document:
         Section(
             "Compatibility",
             equations.compatibility,
-            Formula("Ė = V′ + ad_E V", "E_t = V_u + ad_E V", r"\dot E = V' + \mathrm{ad}_E V"),
+            Formula("Ė = V' + ad_E V", "E_t = V_u + ad_E V", r"\dot E = V' + \mathrm{ad}_E V"),
         ),
         Section(
             "Balance",
             equations.balance,
             Formula(
-                "Σ′ + ad*_E Σ + j = 0", "S_u + ad*_E S + j = 0", r"\Sigma' + \mathrm{ad}^*_E \Sigma + j = 0"
+                "Σ' + ad*_E Σ + j = 0", "S_u + ad*_E S + j = 0", r"\Sigma' + \mathrm{ad}^*_E \Sigma + j = 0"
             ),
         ),
         Section(
-            "Stress", equations.stress_law, Formula("Σ = K (E − Ē)", "S = K (E - E0)", r"\Sigma = K (E - \bar E)")
+            "Stress",
+            equations.stress_law,
+            Formula("Σ = K (E - Ē)", "S = K (E - E0)", r"\Sigma = K (E - \bar E)"),
         ),
-        Section("Wrench", equations.wrench_law, _with("j = −Γ V", "j = -Gamma V", r"j = -\Gamma V", weight)),
+        Section("Wrench", equations.wrench_law, _with("j = -Γ V", "j = -Gamma V", r"j = -\Gamma V", weight)),
         *_orientation(equations),
         Section(
             "Motion",
             equations.motion,
-            _with("Γ V = Σ′ + ad*_E Σ", "Gamma V = S_u + ad*_E S", r"\Gamma V = \Sigma' + \mathrm{ad}^*_E \Sigma", weight),
+            _with(
+                "Γ V = Σ' + ad*_E Σ",
+                "Gamma V = S_u + ad*_E S",
+                r"\Gamma V = \Sigma' + \mathrm{ad}^*_E \Sigma",
+                weight,
+            ),
             remark=_closure(equations),
         ),
         _end(equations.left),
@@ -74,8 +81,11 @@ def _title(equations: FieldEquations) -> str:
 
 def _names(equations: FieldEquations) -> tuple[Names, ...]:
     vectors = {
-        "turn": equations.turn, "twist": equations.twist, "stress": equations.stress, "wrench": equations.wrench,
-    }  # fmt: skip
+        "turn": equations.turn,
+        "twist": equations.twist,
+        "stress": equations.stress,
+        "wrench": equations.wrench,
+    }
     return tuple(Names(meaning, LETTER[meaning], fields) for meaning, fields in vectors.items() if fields)
 
 
@@ -97,7 +107,9 @@ def _orientation(equations: FieldEquations) -> list[Section]:
         Section(
             "Orientation",
             equations.orientation_rates + equations.orientation_slopes,
-            Formula("Ṙ = R Ω̂, R′ = R Π̂", "R_t = R Omega^, R_u = R Pi^", r"\dot R = R \hat\Omega,\; R' = R \hat\Pi"),
+            Formula(
+                "Ṙ = R Ω̂, R' = R Π̂", "R_t = R Omega^, R_u = R Pi^", r"\dot R = R \hat\Omega,\; R' = R \hat\Pi"
+            ),
             remark=meaning,
         )
     ]

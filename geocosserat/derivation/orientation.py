@@ -1,7 +1,7 @@
 """How the moving frame sees the world: the orientation fields that a scene needs, and how they evolve.
 
-In the plane the field is the angle theta. In space a component of the world is carried only where it is called for: the
-direction of one world axis seen in the moving frame, (e1z, e2z, e3z) for z, closes on itself.
+In the plane the field is the angle theta. In space a direction of the world is carried only where it is
+called for: one world axis seen in the moving frame, (e1z, e2z, e3z) for z, closes on itself.
 """
 
 from __future__ import annotations
@@ -30,8 +30,10 @@ class Orientation:
     slopes: tuple[sp.Expr, ...] = ()
 
 
-def orientation(group: Group, axes: Iterable[int], twist: Sequence[sp.Expr], turn: Sequence[sp.Expr]) -> Orientation:
-    """The fields needed to see those world axes (0 for x, ...), from R' = R hat(turn) and dR/dt = R hat(twist)."""
+def orientation(
+    group: Group, axes: Iterable[int], twist: Sequence[sp.Expr], turn: Sequence[sp.Expr]
+) -> Orientation:
+    """The fields needed to see those world axes (0 for x, ...): R' = R hat(turn) and dR/dt = R hat(twist)."""
     needed = sorted(set(axes))
     if not needed:
         return Orientation()

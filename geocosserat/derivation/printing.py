@@ -8,14 +8,14 @@ from collections.abc import Iterable
 from geocosserat.derivation.document import Document, Formula, Section
 from geocosserat.derivation.notation import field_names
 from geocosserat.derivation.records import Equation
-from geocosserat.derivation.writing import Latex, Script, Text
+from geocosserat.derivation.writing import MINUS, PRIME, Latex, Script, Text
 
 _TERMS_A_ROW = 6
 _WIDEST_LEFT = 12
 
 
 def to_text(document: Document, unicode: bool = True, width: int = 100) -> str:
-    """The document as text; without ``unicode`` in ASCII (h1_t for a time derivative, v1_u for one along the rod).
+    """The document as text; without ``unicode`` in ASCII (h1_t in time, v1_u along the rod).
 
     Long equations are broken between terms at ``width`` characters.
     """
@@ -25,8 +25,8 @@ def to_text(document: Document, unicode: bool = True, width: int = 100) -> str:
         vector = ", ".join(script.write(f) for f in names.fields)
         lines.append(f"  {names.meaning:<8}{_spelt(names.letter, unicode)} = ({vector})")
     if document.parameters:
-        values = ", ".join(f"{script.write(name)} = {script.write(value)}" for name, value in document.parameters)
-        lines.append(f"  {'with':<8}{values}")
+        values = [f"{script.write(name)} = {script.write(value)}" for name, value in document.parameters]
+        lines.append(f"  {'with':<8}{', '.join(values)}")
     for section in document.sections:
         formula = f":  {_spelt(section.formula, unicode)}" if section.formula else ""
         lines += ["", f"{section.heading}{formula}", *_text_body(section, script, width)]
@@ -52,7 +52,8 @@ def to_latex(document: Document) -> str:
 
 def _text_body(section: Section, script: Script, width: int) -> Iterable[str]:
     if section.inline:
-        yield "  " + ",  ".join(f"{script.write(e.left)} = {script.write(e.right)}" for e in section.equations)
+        conditions = (f"{script.write(e.left)} = {script.write(e.right)}" for e in section.equations)
+        yield "  " + ",  ".join(conditions)
     else:
         lefts = [script.write(e.left) for e in section.equations]
         # aligned at the equals sign unless a left-hand side is itself a long sum
@@ -97,8 +98,9 @@ def _rows(equation: Equation, script: Script) -> list[str]:
     """An equation in rows of a few terms."""
     left, right = script.terms(equation.left), script.terms(equation.right)
     if len(left) > _TERMS_A_ROW:
-        rows = _chunks(left)
-        return [f"& {rows[0]}", *(rf"&\quad {row}" for row in rows[1:-1]), rf"&\quad {rows[-1]} = {' '.join(right)}"]
+        head, *others = _chunks(left)
+        others[-1] += f" = {' '.join(right)}"
+        return [f"& {head}", *(rf"&\quad {row}" for row in others)]
     first, *others = _chunks(right)
     return [f"{' '.join(left)} &= {first}", *(rf"&\quad {row}" for row in others)]
 
@@ -113,7 +115,7 @@ def _taken(document: Document) -> frozenset[str]:
 
 
 def _spelt(formula: Formula, unicode: bool) -> str:
-    return formula.text if unicode else formula.ascii
+    return formula.text.replace("'", PRIME).replace("-", MINUS) if unicode else formula.ascii
 
 
 def _width(text: str) -> int:

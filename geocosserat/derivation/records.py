@@ -36,7 +36,7 @@ Equations = tuple[Equation, ...]
 
 @dataclass(frozen=True)
 class EndConditions:
-    """What holds at one end at all times; ``position``: its u. ``load``: its load in moving-frame components."""
+    """What holds at one end at all times; ``position``: its u. ``load``: in moving-frame components."""
 
     side: str
     kind: str
@@ -53,10 +53,10 @@ class FieldEquations:
     ``orientation``: the fields through which the world is seen, none if nothing in the scene sees it.
 
     ``compatibility``: dE/dt = V' + ad_E V. ``balance``: S' + ad*_E S + j = 0. ``stress_law``: S(E).
-    ``wrench_law``: j = -Gamma V + effects. ``orientation_rates``, ``orientation_slopes``: in time, along the rod.
+    ``wrench_law``: j = -Gamma V + effects. ``orientation_rates``, ``orientation_slopes``: in t and in u.
     ``motion``: the balance solved for the friction, Gamma V = S(E)' + ad*_E S(E) + effects, which with
-    ``compatibility`` and ``orientation_rates`` is the closed system. Where the law has steps in u, ``motion`` keeps
-    the stress, which is continuous there, and ``stress_law`` closes it. ``left``, ``right``: the ends.
+    ``compatibility`` and ``orientation_rates`` is the closed system. Where the law has steps in u, ``motion``
+    keeps the stress, which is continuous there, and ``stress_law`` closes it. ``left``, ``right``: the ends.
 
     ``energy``: elastic energy per length at rest (force), None unless the stiffness is symmetric.
     ``dissipation``: power lost to friction per length at rest (force / time).

@@ -1,4 +1,4 @@
-"""How one expression is written: dots and primes, short products, decimals. One layout, two scripts: text and LaTeX."""
+"""How one expression is written: dots and primes, short products, decimals; as text and as LaTeX."""
 
 from __future__ import annotations
 
@@ -12,6 +12,8 @@ from typing import Final
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
+from sympy.printing.latex import tex_greek_dictionary
+from sympy.printing.pretty.pretty_symbology import greek_unicode
 
 from geocosserat.derivation.notation import T, U, has_fields, is_field
 
@@ -20,11 +22,8 @@ SUM, PRODUCT, POWER, ATOM = 1, 2, 3, 4
 
 Written = tuple[str, int]
 
-_NAMES = (
-    "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi omicron pi rho sigma tau upsilon phi chi "
-    "psi omega Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega"
-).split()
-GREEK: Final = dict(zip(_NAMES, "αβγδεζηθικλμνξοπρστυφχψωΓΔΘΛΞΠΣΥΦΨΩ", strict=True))
+MINUS, PRIME = "\N{MINUS SIGN}", "\N{PRIME}"
+_DOTS = {0: "", 1: "\N{COMBINING DOT ABOVE}", 2: "\N{COMBINING DIAERESIS}"}
 _LOW, _HIGH = (str.maketrans("0123456789", digits) for digits in ("₀₁₂₃₄₅₆₇₈₉", "⁰¹²³⁴⁵⁶⁷⁸⁹"))
 _PARTS = re.compile(r"([A-Za-z]+?)_?([0-9]*)([xyz]?)")
 # products read like cross products, what turns first; single fields in the order of the group
@@ -167,21 +166,20 @@ class Text(Script):
     def __init__(self, taken: Iterable[str] = (), unicode: bool = True) -> None:
         super().__init__(taken)
         self.unicode = unicode
-        self.minus = "−" if unicode else "-"
+        self.minus = MINUS if unicode else "-"
 
     def name(self, name: str) -> str:
         parts = _parts(name)
         if not self.unicode or parts is None:
             return name
-        return GREEK.get(parts.base, parts.base) + parts.index.translate(_LOW)
+        return greek_unicode.get(parts.base, parts.base) + parts.index.translate(_LOW)
 
     def field(self, name: str, primes: int, dots: int) -> str:
         if not self.unicode:
             return name + ("_" + "t" * dots + "u" * primes if primes or dots else "")
         parts = _parts(name) or _Name(name, "")
-        letter = GREEK.get(parts.base, parts.base)
-        dotted = letter + {0: "", 1: "\u0307", 2: "\u0308"}.get(dots, f"^({dots}t)")
-        return unicodedata.normalize("NFC", dotted) + parts.index.translate(_LOW) + "′" * primes
+        dotted = unicodedata.normalize("NFC", greek_unicode.get(parts.base, parts.base) + _DOTS[dots])
+        return dotted + parts.index.translate(_LOW) + PRIME * primes
 
     def number(self, written: str) -> Written:
         return written, ATOM
@@ -201,7 +199,8 @@ class Text(Script):
         over = self.juxtaposed(above) if above else "1"
         under = self.juxtaposed(below)
         over = self.bracket(over) if len(above) == 1 and above[0][1] == SUM else over
-        return f"{over}/{under if len(below) == 1 and below[0][1] > PRODUCT else self.bracket(under)}", PRODUCT
+        under = under if len(below) == 1 and below[0][1] > PRODUCT else self.bracket(under)
+        return f"{over}/{under}", PRODUCT
 
     def other(self, e: sp.Expr) -> str:
         return str(e)
@@ -211,12 +210,7 @@ class Latex(Script):
     """LaTeX for math mode."""
 
     space = r" \, "
-    _FUNCTIONS: Final = {
-        "abs": r"\left|{}\right|",
-        "sqrt": r"\sqrt{{{}}}",
-        "heaviside": r"H\left({}\right)",
-        **{name: rf"\{name}\left({{}}\right)" for name in ("sin", "cos", "tan", "exp", "log", "tanh", "sinh", "cosh")},
-    }
+    _NAMED: Final = frozenset({"sin", "cos", "tan", "exp", "log", "tanh", "sinh", "cosh"})
 
     def name(self, name: str) -> str:
         return self.field(name, 0, 0)
@@ -225,8 +219,10 @@ class Latex(Script):
         parts = _parts(name)
         if parts is None:
             return r"\mathrm{" + name.replace("_", r"\_") + "}"
-        letter = rf"\{parts.base}" if parts.base in GREEK and parts.base != "omicron" else parts.base
-        letter = letter if len(parts.base) == 1 or parts.base in GREEK else rf"\mathrm{{{letter}}}"
+        if parts.base in greek_unicode:
+            letter = tex_greek_dictionary.get(parts.base, rf"\{parts.base}")
+        else:
+            letter = parts.base if len(parts.base) == 1 else rf"\mathrm{{{parts.base}}}"
         dotted = rf"\{'d' * dots}ot{{{letter}}}" if dots else letter
         return dotted + (f"_{{{parts.index}}}" if parts.index else "") + "'" * primes
 
@@ -241,7 +237,15 @@ class Latex(Script):
         return rf"\left({inner}\right)"
 
     def call(self, function: str, argument: str) -> str:
-        return self._FUNCTIONS.get(function, rf"\operatorname{{{{{function}}}}}\left({{}}\right)").format(argument)
+        match function:
+            case "abs":
+                return rf"\left|{argument}\right|"
+            case "sqrt":
+                return rf"\sqrt{{{argument}}}"
+            case "heaviside":
+                return "H" + self.bracket(argument)
+        name = rf"\{function}" if function in self._NAMED else rf"\operatorname{{{function}}}"
+        return name + self.bracket(argument)
 
     def power(self, base: str, exponent: sp.Expr) -> str:
         return f"{base}^{{{self.write(exponent)}}}"

@@ -36,21 +36,23 @@ def points_along(place: Place, expressions: Sequence[Expression], names: Names) 
     return np.unique(np.concatenate([np.linspace(0.0, names.length, POINTS), sides]))
 
 
-def check_finite(place: Place, vector: Sequence[Expression], names: Names, until: float) -> None:
-    """Raise InputError unless every component is finite along the rod and through the run."""
-    u = points_along(place, vector, names)
-    t = np.linspace(0.0, until, INSTANTS)
+def check_finite(place: Place, e: Expression, names: Names, until: float) -> None:
+    """Raise InputError unless the expression is finite along the rod and from time 0 to ``until``."""
+    used = symbols(e)
+    u = points_along(place, [e], names) if "u" in used else np.zeros(1)
+    t = np.linspace(0.0, until, INSTANTS) if "t" in used else np.zeros(1)
+    values = np.broadcast_to(_at(e, names, u[:, None], t[None, :]), (u.size, t.size))
+    for i, j in np.argwhere(~np.isfinite(values)):
+        where = {"u": float(u[i]), "t": float(t[j])}
+        at = " and ".join(f"{name} = {value:.6g}" for name, value in where.items() if name in used)
+        found = Found(f"{float(values[i, j])} at {at}")
+        raise place.wrong("a finite value", found, "change the expression there")
+
+
+def check_all_finite(place: Place, vector: Sequence[Expression], names: Names, until: float = 0.0) -> None:
+    """``check_finite`` of every component."""
     for i, e in enumerate(vector):
-        used = symbols(e)
-        rod, time = (u if "u" in used else u[:1]), (t if "t" in used else t[:1])
-        values = np.broadcast_to(_at(e, names, rod[:, None], time[None, :]), (rod.size, time.size))
-        bad = np.argwhere(~np.isfinite(values))
-        if bad.size:
-            first, instant = bad[0]
-            where = {"u": float(rod[first]), "t": float(time[instant])}
-            at = " and ".join(f"{name} = {value:.6g}" for name, value in where.items() if name in used)
-            found = Found(f"{float(values[first, instant])} at {at}")
-            raise place.at(i).wrong("a finite value", found, "change the expression there")
+        check_finite(place.at(i), e, names, until)
 
 
 def check_positive(

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any, cast
 
 from geocosserat.algebra.groups import Group
-from geocosserat.model.checks import check_finite
+from geocosserat.model.checks import check_all_finite, check_finite
 from geocosserat.model.expressions import Expression, Number
 from geocosserat.model.fields import (
     ALONG_ROD_IN_TIME,
@@ -67,7 +67,7 @@ def _read_end(place: Place, values: Any, default: str, group: Group, names: Name
     force = torque = None
     if "force" in table:
         force = vector(*table.at("force"), names, IN_TIME, _force_names(group))
-        check_finite(table.at("force")[0], force, names, until)
+        check_all_finite(table.at("force")[0], force, names, until)
     if "torque" in table:
         torque = _read_torque(*table.at("torque"), group, names, IN_TIME, until)
     frame = word(*table.at("frame"), FRAMES) if "frame" in table else "body"
@@ -83,13 +83,14 @@ def _read_torque(
     """A moment: one component in the plane, written without brackets, three in space."""
     if group.rotations > 1:
         torque = vector(place, value, names, variables, group.wrench[group.translations :])
+        check_all_finite(place, torque, names, until)
     elif isinstance(value, list):
         raise place.wrong(
             "one number or expression (the plane has one rotation)", value, "write it without brackets"
         )
     else:
         torque = (expression(place, value, names, variables),)
-    check_finite(place, torque, names, until)
+        check_finite(place, torque[0], names, until)
     return torque
 
 
@@ -110,7 +111,7 @@ def _read_effect(place: Place, values: dict[str, Any], group: Group, names: Name
     match kind:
         case "weight":
             force = vector(*table.at("force"), names, variables, axes)
-            check_finite(table.at("force")[0], force, names, until)
+            check_all_finite(table.at("force")[0], force, names, until)
             return Weight(force)
         case "follower":
             vector(*table.at("force"), names, variables, _force_names(group))

@@ -9,6 +9,7 @@ from typing import Any
 
 from geocosserat.model.expressions import RESERVED, ExpressionError, evaluate, parse, symbols
 from geocosserat.model.place import Found, Place, shown
+from geocosserat.model.schema import MAX_PARAMETERS
 
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]{0,63}")
 
@@ -21,6 +22,10 @@ def read_parameters(place: Place, values: Any) -> dict[str, float]:
     """
     if not isinstance(values, dict):
         raise place.wrong("a table of numbers", values, "write [parameters] above lines such as kappa = 1e4")
+    if len(values) > MAX_PARAMETERS:
+        raise place.wrong(
+            f"at most {MAX_PARAMETERS} parameters", Found(str(len(values))), "write numbers in place"
+        )
     for name in values:
         _check_name(place, name)
     definitions = {name: _definition(place.at(name), value, values) for name, value in values.items()}

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, cast
 
 from geocosserat.algebra.groups import Group, group_of
-from geocosserat.model.checks import check_finite, check_positive
+from geocosserat.model.checks import check_all_finite, check_positive
 from geocosserat.model.ends import read_effects, read_ends
 from geocosserat.model.expressions import Number, symbols
 from geocosserat.model.fields import (
@@ -131,7 +131,7 @@ def _read_material(rod: Table, group: Group, names: Names) -> tuple[Matrix, Matr
         if "t" in symbols(e):
             hint = "write an expression of u without t"
             raise place.at(i).unavailable("a reference that does not change in time", values[i], hint)
-    check_finite(place, reference, names, 0.0)
+    check_all_finite(place, reference, names)
     return stiffness, friction, reference
 
 
@@ -153,7 +153,7 @@ def _read_start(table: Table, model: RodModel, names: Names) -> Start:
     strain = model.reference
     if "strain" in table:
         strain = vector(*table.at("strain"), names, ALONG_ROD, group.strain)
-        check_finite(table.at("strain")[0], strain, names, 0.0)
+        check_all_finite(table.at("strain")[0], strain, names)
     axes = ("x", "y", "z")[: group.space]
     position = numbers(*table.at("position"), names, axes) if "position" in table else (0.0,) * group.space
     right_key, wrong_key = ("angle", "rotation") if group.rotations == 1 else ("rotation", "angle")

@@ -29,6 +29,7 @@ FRAMES: Final = ("body", "world")
 METHODS: Final = ("cvode", "radau", "bdf", "lsoda")
 BACKENDS: Final = ("auto", "c", "numpy")
 
+MAX_PARAMETERS: Final = 1_000
 MAX_EFFECTS: Final = 100
 MAX_FRAMES: Final = 100_000
 MAX_ELEMENTS: Final = 100_000

@@ -12,8 +12,9 @@ from geocosserat.results.errors import FileError
 def write_bytes(path: str | os.PathLike[str], data: bytes) -> Path:
     """Write `data` to `path` so that a reader sees the old file or the whole new one, also after a power cut.
 
-    The bytes go to a temporary file in the same folder (a rename is atomic only within one file system), reach the
-    disk, and then take the name. On failure the temporary file is removed and an older file at `path` is untouched.
+    The bytes go to a temporary file in the same folder (a rename is atomic only within one file system),
+    reach the disk, and then take the name. On failure the temporary file is removed and an older file at
+    `path` stays.
 
     Raises FileError when the folder is missing, cannot be written or is full.
     """

@@ -12,11 +12,11 @@ Array = NDArray[np.float64]
 
 
 def smooth(solution: Solution, values: Array, pieces: int = 200) -> tuple[Array, Array]:
-    """Fields at many places: the polynomial that the scheme means in each element, not chords between its nodes.
+    """Fields at many places: the polynomial that the scheme means in each element, not chords of its nodes.
 
-    values is (T, N, c), at the nodes, or (T, Q, c), at the Gauss points. Returns places (M,), lengths along the rod
-    at rest, and values (T, M, c), with M about `pieces`; each element gives its own value at a common boundary, so
-    a field of the Gauss points keeps its jumps.
+    values is (T, N, c), at the nodes, or (T, Q, c), at the Gauss points. Returns places (M,), lengths along
+    the rod at rest, and values (T, M, c), with M about `pieces`; each element gives its own value at a common
+    boundary, so a field of the Gauss points keeps its jumps.
     """
     n, p = solution.elements, solution.degree
     at_nodes = values.shape[1] == n * p + 1
@@ -34,7 +34,7 @@ def smooth(solution: Solution, values: Array, pieces: int = 200) -> tuple[Array,
 
 
 def moments(solution: Solution, count: int) -> NDArray[np.intp]:
-    """Indices of at most `count` frames, first and last among them, about evenly spaced along the way travelled.
+    """Indices of at most `count` frames, first and last among them, about even along the way travelled.
 
     Evenly spaced in time, the shapes of a rod that relaxes would lie on top of each other at its end.
     """

@@ -8,8 +8,8 @@ import os
 class FileError(OSError):
     """A result file that cannot be written or read.
 
-    ``str()`` is the one message "FILE: expected ..., found ...; DO"; the attributes `file`, `expected`, `found`
-    and `hint` are its parts.
+    ``str()`` is the one message "FILE: expected ..., found ...; DO"; the attributes `file`, `expected`,
+    `found` and `hint` are its parts.
     """
 
     def __init__(self, file: str | os.PathLike[str], expected: str, found: str, hint: str) -> None:
@@ -20,5 +20,5 @@ class FileError(OSError):
         self.hint = hint
 
     def __reduce__(self) -> tuple[type[FileError], tuple[str, str, str, str]]:
-        # OSError would hand its one argument to __init__; errors must survive the way back from a worker process
+        # OSError would hand its one argument to __init__; errors must survive the way from a worker process
         return type(self), (self.file, self.expected, self.found, self.hint)

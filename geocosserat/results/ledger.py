@@ -15,7 +15,7 @@ class Ledger:
     stored       change of the elastic energy
     dissipated   energy taken by friction
     work         work done on the rod by its ends and by the effects
-    residual     |stored + dissipated - work| relative to the largest of the three; 0 for a rod that does nothing
+    residual     |stored + dissipated - work| relative to the largest of the three; 0 when all are 0
     """
 
     stored: float

@@ -14,7 +14,7 @@ from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import h5netcdf
+import h5netcdf  # type: ignore[import-untyped]
 
 from geocosserat.results import seal
 from geocosserat.results.atomic import write_bytes
@@ -58,7 +58,8 @@ def save(solution: Solution, path: str | os.PathLike[str]) -> Path:
 def load(path: str | os.PathLike[str]) -> Solution:
     """The solution in a file, equal bit for bit to the one that was saved.
 
-    Raises FileError when the file is missing, is not a solution file, or differs in any byte from what was written.
+    Raises FileError when the file is missing, is not a solution file, or differs in any byte from what was
+    written.
     """
     with h5netcdf.File(io.BytesIO(_verified(path)), "r") as file:
         attributes = dict(file.attrs)
@@ -69,11 +70,12 @@ def load(path: str | os.PathLike[str]) -> Solution:
     values |= {name: json.loads(attributes[name]) for name in _DICTIONARIES}
     values |= {name: attributes[name] for name in (*_TEXTS, *_INTEGERS)}
     values |= {name: attributes.get(name) for name in _NUMBERS}
-    return Solution(**{field.name: values.get(field.name) for field in fields(Solution)})
+    recovered: dict[str, Any] = {field.name: values.get(field.name) for field in fields(Solution)}
+    return Solution(**recovered)
 
 
 def dataset(path: str | os.PathLike[str]) -> xarray.Dataset:
-    """The file as an xarray data set, after the same checks as `load`; needs xarray, which takes a while to import.
+    """The file as an xarray data set, after the same checks as `load`; xarray takes a while to import.
 
     Raises FileError as `load` does.
     """
@@ -86,14 +88,13 @@ def dataset(path: str | os.PathLike[str]) -> xarray.Dataset:
 def _image(solution: Solution) -> bytes:
     """The bytes of the file with a blank checksum. Written in memory: the disk then sees one plain write."""
     image = io.BytesIO()
-    sizes = {name: size for key, names in SHAPES.items() if (array := getattr(solution, key)) is not None
-             for name, size in zip(names, array.shape, strict=True)}
+    arrays = {name: array for name in SHAPES if (array := getattr(solution, name)) is not None}
     with h5netcdf.File(image, "w") as file:
-        file.dimensions = sizes
-        for name, dimensions in SHAPES.items():
-            if (array := getattr(solution, name)) is not None:
-                variable = file.create_variable(name, dimensions, data=array)
-                variable.attrs.update(_attributes(solution, name, dimensions))
+        for name, array in arrays.items():
+            file.dimensions |= dict(zip(SHAPES[name], array.shape, strict=True))
+        for name, array in arrays.items():
+            variable = file.create_variable(name, SHAPES[name], data=array)
+            variable.attrs.update(_attributes(solution, name, SHAPES[name]))
         file.attrs["format"] = FORMAT
         file.attrs["checksum"] = seal.BLANK
         for name in _TEXTS:
@@ -112,9 +113,9 @@ def _attributes(solution: Solution, name: str, dimensions: tuple[str, ...]) -> d
     long_name, units = _MEANING[name]
     attributes = {"long_name": long_name, "units": units}
     # so that readers of CF files take u and u_point for coordinates
-    if name not in ("u", "u_point"):
-        attributes |= {"coordinates": label for size, label in (("node", "u"), ("point", "u_point"))
-                       if size in dimensions}
+    for size, coordinate in (("node", "u"), ("point", "u_point")):
+        if size in dimensions and name != coordinate:
+            attributes["coordinates"] = coordinate
     group = solution.group
     names = {"twist": group.twist, "turn": group.strain, "stress": group.stress}.get(name)
     if names is not None:

@@ -9,7 +9,9 @@ from numpy.typing import NDArray
 
 from geocosserat.results import style
 from geocosserat.results.curves import smooth
-from geocosserat.results.solution import Solution
+from geocosserat.results.solution import Array, Solution
+
+_VISIBLE = 1e-6  # a strain (rotations times the length) that changes by less is worth no panel and no scale
 
 
 def draw_ledger(axes: Axes, solution: Solution) -> None:
@@ -20,14 +22,15 @@ def draw_ledger(axes: Axes, solution: Solution) -> None:
     stored, dissipated, work = solution.energy, solution.dissipated, solution.work
     series = [("stored", stored, style.STORED), ("dissipated", dissipated, style.DISSIPATED)]
     balance = "stored + dissipated"
-    if np.any(np.abs(work) > 1e-12 * np.max(np.abs([stored, dissipated]))):
+    if np.any(np.abs(work) > 1e-9 * np.max(np.nan_to_num(np.abs([stored, dissipated])))):
         series.append(("work", work, style.WORK))
         balance += r" $-$ work"
     for label, values, colour in series:
-        axes.plot(solution.time, values, color=colour, label=label)
-    axes.plot(solution.time, stored + dissipated - work, color=style.INK, linestyle=(0, (4, 3)), linewidth=1.0,
-              label=balance)
-    axes.set_xlim(solution.time[0], solution.time[-1] if len(solution.time) > 1 else None)
+        axes.plot(solution.time, values, color=colour, label=label, marker=None if len(values) > 1 else "o")
+    axes.plot(solution.time, stored + dissipated - work, color=style.INK, linewidth=1.0, label=balance,
+              linestyle=(0, (4, 3)))
+    if len(solution.time) > 1:
+        axes.set_xlim(solution.time[0], solution.time[-1])
     axes.set_xlabel("time $t$")
     axes.set_ylabel("energy")
     axes.legend(loc="lower left", bbox_to_anchor=(-0.02, 1.0), ncols=2, borderaxespad=0.2, handlelength=1.4,
@@ -42,18 +45,28 @@ def draw_turn(
     for moment, curve in zip(solution.time[frames], values[..., 0], strict=True):
         axes.plot(places, curve, color=colours.to_rgba(moment), linewidth=1.1)
     axes.set_xlim(0.0, solution.length)
+    low, high = axes.get_ylim()
+    least = _VISIBLE / _scale(solution)[component]
+    if high - low < least:  # round-off is not to fill the panel
+        axes.set_ylim((low + high - least) / 2, (low + high + least) / 2)
     axes.set_xlabel("place on the rod at rest $u$")
-    axes.set_ylabel(style.in_print(solution.group.strain[component]))
+    axes.set_ylabel(style.strain_name(solution.group.strain[component]))
 
 
 def liveliest(solution: Solution, count: int) -> list[int]:
-    """The `count` strain components that change most over the rod and the run, in the order of E.
+    """The strain components, at most `count`, that change most over the rod and the run, in the order of E.
 
-    Rotations count times the length, so that all are dimensionless; of equals the later goes first, so that a rod
-    that does nothing shows a bend.
+    Components that hardly change beside the first are left out. Of equals the last counts first, so that a
+    rod that does nothing shows a bend.
     """
+    flat = np.nan_to_num(solution.turn).reshape(-1, solution.group.dimension)
+    change = np.ptp(flat, axis=0) * _scale(solution)
+    order = np.lexsort((np.arange(len(change)), change))[::-1][:count]
+    first, *others = (int(a) for a in order)
+    return sorted([first, *(a for a in others if change[a] > _VISIBLE * change[first])])
+
+
+def _scale(solution: Solution) -> Array:
+    """What makes strains dimensionless: 1 for translations, the length for rotations."""
     group = solution.group
-    scale = np.where(np.arange(group.dimension) < group.translations, 1.0, solution.length)
-    flat = np.nan_to_num(solution.turn.reshape(-1, group.dimension))
-    change = np.ptp(flat, axis=0) * scale
-    return sorted(int(a) for a in np.lexsort((np.arange(group.dimension), change))[-count:])
+    return np.where(np.arange(group.dimension) < group.translations, 1.0, solution.length)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import os
+import textwrap
 import warnings
 from pathlib import Path
 
@@ -32,13 +33,15 @@ def picture(solution: Solution, path: str | os.PathLike[str]) -> Path:
     """
     target = Path(path)
     if target.suffix.lower() not in SUFFIXES:
-        raise FileError(target, f"a name that ends in {', '.join(SUFFIXES)}", repr(target.suffix), "rename the picture")
+        raise FileError(target, f"a name that ends in {', '.join(SUFFIXES)}", repr(target.suffix),
+                        "rename the picture")
     image = io.BytesIO()
     kind = target.suffix.lower()[1:]
     # no date inside, so that the same run gives the same bytes
     metadata = {} if kind == "png" else {"Date" if kind == "svg" else "CreationDate": None}
     with matplotlib.rc_context(style.RC), warnings.catch_warnings():
-        warnings.filterwarnings("ignore", message="Glyph", category=UserWarning)  # a title in a script without font
+        # a title in a script that no font at hand has
+        warnings.filterwarnings("ignore", message="Glyph", category=UserWarning)
         _draw(solution).savefig(image, format=kind, metadata=metadata)
     return write_bytes(target, image.getvalue())
 
@@ -59,7 +62,7 @@ def _draw(solution: Solution) -> Figure:
     if planar:
         draw_planar(result.add_axes((0.065, 0.11, 0.48, 0.77)), solution, shapes, colours)
     else:
-        draw_spatial(result.add_axes((-0.03, -0.06, 0.6, 1.03), projection="3d"), solution, shapes, colours)  # type: ignore[arg-type]
+        draw_spatial(result.add_axes((0.01, 0.0, 0.54, 0.92), projection="3d"), solution, shapes, colours)
     _colour_bar(result, colours)
     right = _stack(result, 1 + len(shown))
     draw_ledger(right[0], solution)
@@ -68,15 +71,18 @@ def _draw(solution: Solution) -> Figure:
         if axes is not right[-1]:
             axes.tick_params(labelbottom=False)
             axes.set_xlabel("")
+    for axes in result.axes:
+        style.fold_powers(axes)
     # a title may hold dollar signs and is not mathematics
-    result.text(0.02, 0.965, solution.title, fontsize=12, fontweight="bold", va="top", parse_math=False, clip_on=True)
+    result.text(0.02, 0.965, textwrap.shorten(solution.title, 90, placeholder=" ..."), fontsize=12,
+                fontweight="bold", va="top", parse_math=False)
     return result
 
 
 def _colour_bar(result: Figure, colours: ScalarMappable) -> None:
     bar = result.colorbar(colours, cax=result.add_axes((0.57, 0.2, 0.01, 0.6)))
-    bar.outline.set_visible(False)  # type: ignore[operator]
-    bar.ax.set_title("$t$", pad=5)
+    bar.outline.set_visible(False)
+    bar.ax.set_title("$t$", pad=6)
 
 
 def _stack(result: Figure, count: int) -> list[Axes]:

@@ -9,7 +9,14 @@ from contextlib import contextmanager
 from typing import TextIO
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.progress import (
+    BarColumn,
+    Progress,
+    TaskProgressColumn,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
 
 Report = Callable[[float, int], None]
 """Called with the fraction of the time simulated, 0 to 1, and the number of steps taken so far."""
@@ -27,8 +34,9 @@ def progress(
 ) -> Iterator[Report]:
     """Give a `Report` that draws a bar on `stream` (default: standard error) and takes it away at the end.
 
-    Nothing is ever written unless the stream is a terminal and `delay` seconds have passed. There is no thread: the
-    bar moves when the report is called, and a call between two drawings costs one look at the clock.
+    Nothing is ever written unless the stream is a terminal and `delay` seconds have passed. There is no
+    thread: the bar moves when the report is called, and a call between two drawings costs one look at the
+    clock.
     """
     chosen = sys.stderr if stream is None else stream
     if chosen is None or chosen.closed or not chosen.isatty():  # sys.stderr is None without a console
@@ -77,7 +85,7 @@ class _Bar:
             redirect_stdout=False, redirect_stderr=False,
         )
         shown.add_task(self._label, total=1.0, steps=0)
-        shown.tasks[0].start_time = self._started  # the elapsed time counts from the start, not from the first drawing
+        shown.tasks[0].start_time = self._started  # not the time of the first drawing
         shown.start()
         return shown
 

@@ -1,7 +1,7 @@
 """A checksum that a file carries inside itself and that covers all its other bytes.
 
-The file format's own library can hang on a damaged file, so damage must be found before that library sees a byte:
-the checksum is an ordinary text attribute of the file, found here by its first characters, and the sum is taken
+The library of the file format can hang on a damaged file, so damage must be found before it sees a byte: the
+checksum is an ordinary text attribute of the file, found here by its first characters, and the sum is taken
 with its digits blank.
 """
 
@@ -40,7 +40,7 @@ def intact(sealed: bytes) -> bool:
 
 
 def _places(sealed: bytes) -> Iterator[int]:
-    """Where checksums may stand: a scene could quote that of another file in a comment, so there may be several."""
+    """Where checksums may stand: several places, if a scene quotes that of another file in a comment."""
     at = sealed.find(MARK.encode())
     while at >= 0:
         yield at + len(MARK)

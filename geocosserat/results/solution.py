@@ -1,4 +1,4 @@
-"""The result of a run: pure data, the contract between the solver's side and everything that reads results."""
+"""The result of a run: pure data, the contract between the solver's side and all that reads results."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ SECONDS = ("derive", "compile", "plan", "solve")
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Solution:
-    """A rod over time: T frames, N = elements x degree + 1 nodes, Q = elements x degree Gauss points, d components.
+    """A rod over time: T frames, Q = elements x degree Gauss points, N = Q + 1 nodes, d components.
 
     scene, title      text of the scene (TOML) and its title
     motion            "planar" (d = 3) or "spatial" (d = 6)
@@ -46,7 +46,7 @@ class Solution:
     turn (T, Q, d)    h: dimensionless, Pi: 1 / length;   moving frame
     stress (T, Q, d)  F: force, M: force x length;        moving frame
     energy, dissipated, work (T,)  force x length: stored, taken by friction so far, done on the rod so far
-    requested, estimated           position error at the end relative to the length: asked for, and found; or None
+    requested, estimated  position error at the end relative to the length: asked for, and found; or None
     evaluations       rate, jacobian, steps;   seconds   derive, compile, plan, solve
     provenance        versions, platform, date, kernel: whatever is needed to do it again
     reached, reason   whether the run came to its end, and if not, why
@@ -105,14 +105,15 @@ class Solution:
         sizes = {"time": len(np.atleast_1d(self.time)), "node": points + 1, "point": points,
                  "component": group.dimension, "axis": group.space, "frame": group.space}
         if (self.angle is not None) != (self.motion == "planar"):
-            raise ValueError(f"solution.angle: expected an array in the plane and None in space, found "
-                             f"{'None' if self.angle is None else 'an array'} for a {self.motion} motion; correct it")
+            found = "None" if self.angle is None else "an array"
+            raise ValueError(f"solution.angle: expected an array in the plane and None in space, "
+                             f"found {found} for a {self.motion} motion; correct the one or the other")
         for name, dimensions in SHAPES.items():
             array, expected = getattr(self, name), tuple(sizes[dimension] for dimension in dimensions)
             if array is not None and array.shape != expected:
                 raise ValueError(f"solution.{name}: expected the shape {expected} ({', '.join(dimensions)}), "
-                                 f"found {array.shape}; {self.elements} elements of degree {self.degree} have "
-                                 f"{points + 1} nodes and {points} points")
+                                 f"found {array.shape}; correct it: {self.elements} elements of degree "
+                                 f"{self.degree} have {points + 1} nodes and {points} points")
         for name in ("time", "u", "u_point"):
             array = getattr(self, name)
             if array.size == 0 or not np.all(np.isfinite(array)) or np.any(np.diff(array) <= 0):
@@ -139,8 +140,8 @@ class Solution:
     def __repr__(self) -> str:
         state = "reached" if self.reached else f"stopped: {self.reason}"
         return (f"Solution({self.title!r}: {self.motion}, {self.elements} x degree {self.degree}, "
-                f"{self.unknowns} unknowns, {self.method}, {len(self.time)} frames until t = {self.time[-1]:g}, "
-                f"{state})")
+                f"{self.unknowns} unknowns, {self.method}, "
+                f"{len(self.time)} frames until t = {self.time[-1]:g}, {state})")
 
 
 def _frozen(values: Array | None) -> Array | None:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable
 from typing import Any
 
 import matplotlib
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import ListedColormap, Normalize
+from matplotlib.ticker import ScalarFormatter
 
 from geocosserat.results.solution import Array
 
@@ -19,13 +19,30 @@ INK, FAINT = "#222222", "#9a9a9a"
 # Okabe and Ito's colours, which the colour-blind tell apart
 STORED, DISSIPATED, WORK = "#0072b2", "#d55e00", "#009e73"
 
-RC: dict[str, Any] = {
-    "font.size": 9, "axes.titlesize": 9, "axes.labelsize": 9, "xtick.labelsize": 8, "ytick.labelsize": 8,
-    "legend.fontsize": 8, "font.family": "STIXGeneral", "mathtext.fontset": "stix", "axes.linewidth": 0.7, "lines.linewidth": 1.4,
-    "xtick.major.width": 0.7, "ytick.major.width": 0.7, "xtick.direction": "out", "ytick.direction": "out",
-    "axes.spines.top": False, "axes.spines.right": False, "axes.edgecolor": INK, "axes.labelcolor": INK,
-    "xtick.color": INK, "ytick.color": INK, "text.color": INK, "legend.frameon": False, "axes.formatter.limits": (-3, 4),
-    "axes.formatter.use_mathtext": True, "svg.hashsalt": "geocosserat", "pdf.fonttype": 42,
+RC: Any = {  # matplotlib's own type of this is a list of all its keys
+    "font.family": ["STIXGeneral", "DejaVu Sans"],
+    "mathtext.fontset": "stix",
+    "font.size": 9,
+    "axes.titlesize": 9,
+    "axes.labelsize": 9,
+    "xtick.labelsize": 8,
+    "ytick.labelsize": 8,
+    "legend.fontsize": 8,
+    "axes.linewidth": 0.7,
+    "xtick.major.width": 0.7,
+    "ytick.major.width": 0.7,
+    "lines.linewidth": 1.4,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "legend.frameon": False,
+    "text.color": INK,
+    "axes.edgecolor": INK,
+    "axes.labelcolor": INK,
+    "xtick.color": INK,
+    "ytick.color": INK,
+    "axes.formatter.limits": (-3, 4),
+    "svg.hashsalt": "geocosserat",
+    "pdf.fonttype": 42,
 }
 
 
@@ -36,17 +53,32 @@ def time_colours(time: Array) -> ScalarMappable:
     return ScalarMappable(Normalize(float(time[0]), end), ListedColormap(shades))
 
 
-def colour_of(colours: ScalarMappable) -> Callable[[float], tuple[float, float, float, float]]:
-    """The colour of a moment."""
-    return lambda moment: colours.to_rgba(moment)  # type: ignore[return-value]
+_LETTERS = {"Pi": r"\Pi"}
+_MODES = {
+    "h1": "stretch", "h2": "shear", "h3": "shear",
+    "Pi": "bend", "Pi1": "twist", "Pi2": "bend", "Pi3": "bend",
+}
 
 
-_LETTERS = {"Pi": r"\Pi", "Omega": r"\Omega"}
-
-
-def in_print(component: str) -> str:
-    """A component in mathematical type: "Pi2" -> "$\\Pi_2$"."""
-    match = re.fullmatch(r"([A-Za-z]+)(\d*)", component)
-    letter, index = match.groups() if match else (component, "")
+def strain_name(component: str) -> str:
+    """A strain component in words and mathematical type: "Pi2" -> "bend $\\Pi_2$"."""
+    letter, index = component.rstrip("123"), component[len(component.rstrip("123")):]
     letter = _LETTERS.get(letter, letter)
-    return f"${letter}_{index}$" if index else f"${letter}$"
+    return f"{_MODES[component]} ${letter}_{index}$" if index else f"{_MODES[component]} ${letter}$"
+
+
+def fold_powers(axes: Axes) -> None:
+    """Move a common power of ten from the end of an axis, where legends are, into its label or the title."""
+    for axis in (axes.xaxis, axes.yaxis, *([axes.zaxis] if hasattr(axes, "zaxis") else [])):
+        formatter = axis.get_major_formatter()
+        if not isinstance(formatter, ScalarFormatter):
+            continue
+        formatter.set_locs(axis.get_majorticklocs())
+        formatter.set_useMathText(True)
+        power = formatter.get_offset()
+        formatter.set_useMathText(False)  # plain tick labels take a tenth of the time to set
+        axis.get_offset_text().set_visible(False)
+        for text in (axis.label, axes.title):
+            if power and text.get_text():
+                text.set_text(f"{text.get_text()} ({power})")
+                break

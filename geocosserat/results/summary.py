@@ -24,8 +24,8 @@ def summary(
 ) -> dict[str, Any]:
     """The fields of ``run --json`` in plain JSON types; a number that is not finite becomes None.
 
-    `files` are the paths written; `scene` is the path of the scene, by default its title. `tip` is the right end
-    (u = length), `base` the left one, both at the last frame; `until` is the time of that frame.
+    `files` are the paths written; `scene` is the path of the scene, by default its title. `tip` is the right
+    end (u = length), `base` the left one, both at the last frame; `until` is the time of that frame.
     """
     fields = {
         "scene": solution.title if scene is None else scene,
@@ -59,7 +59,7 @@ def write_summary(fields: Mapping[str, Any], path: str | os.PathLike[str]) -> Pa
 
 
 def print_summary(solution: Solution, console: Console, files: Iterable[str | os.PathLike[str]] = ()) -> None:
-    """Print what a reader wants to know first: where the ends are, whether the energy balances, the error, the cost."""
+    """Print what a reader wants to know first: where the ends are, the balance, the error, the cost."""
     fields = summary(solution, files)
     rows = [
         ("rod", f"{fields['motion']}, {fields['unknowns']} unknowns "
@@ -67,7 +67,8 @@ def print_summary(solution: Solution, console: Console, files: Iterable[str | os
         ("time", _time(fields)),
         ("tip", _place(fields["tip"])),
         ("base", _place(fields["base"])),
-        ("energy", f"{_digits(fields['energy']['start'])} at the start, {_digits(fields['energy']['end'])} at the end"),
+        ("energy", f"{_digits(fields['energy']['start'])} at the start, "
+                   f"{_digits(fields['energy']['end'])} at the end"),
         ("ledger", _ledger(fields["ledger"])),
         ("error", f"estimated {_digits(fields['error']['estimated'], 2)}, "
                   f"requested {_digits(fields['error']['requested'], 2)} (of the length)"),
@@ -126,4 +127,5 @@ def _cost(fields: Mapping[str, Any]) -> str:
     counts, seconds = fields["evaluations"], fields["seconds"]
     spent = ", ".join(f"{name} {value:.3g} s" for name, value in seconds.items() if value)
     return (f"{fields['method']}, {fields['backend']} backend: {_count(counts['steps'], 'step')}, "
-            f"{_count(counts['rate'], 'rate')}, {_count(counts['jacobian'], 'Jacobian')}; {spent or 'no time'}")
+            f"{_count(counts['rate'], 'rate')}, {_count(counts['jacobian'], 'Jacobian')}; "
+            f"{spent or 'no time'}")

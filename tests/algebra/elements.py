@@ -23,8 +23,8 @@ def components(group: Group, seed: int, batch: tuple[int, ...] = ()) -> Array:
 def with_angle(group: Group, angle: float, seed: int, batch: tuple[int, ...] = ()) -> Array:
     """Random components whose rotation part has this length."""
     X = components(group, seed, batch)
-    w = X[..., group.translations:]
-    X[..., group.translations:] = w * (angle / np.linalg.norm(w, axis=-1, keepdims=True))
+    w = X[..., group.translations :]
+    X[..., group.translations :] = w * (angle / np.linalg.norm(w, axis=-1, keepdims=True))
     return X
 
 

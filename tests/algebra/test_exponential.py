@@ -40,7 +40,7 @@ def test_log_gives_back_what_exp_was_given(group: Group, angle: float) -> None:
     X = with_angle(group, angle, 12, (50,))
     back = log(group, exp(group, X))
     assert back == pytest.approx(X, rel=1e-13, abs=1e-14)
-    w, found = X[..., group.translations:], back[..., group.translations:]
+    w, found = X[..., group.translations :], back[..., group.translations :]
     assert np.abs(found - w).max() <= 4e-16 * min(1.0, angle) + 4e-16 * angle
 
 
@@ -51,7 +51,7 @@ def test_exp_gives_back_what_log_was_given(group: Group, angle: float) -> None:
     g = exp(group, with_angle(group, angle, 13, (50,)))
     X = log(group, g)
     assert exp(group, X) == pytest.approx(g, abs=1e-13)
-    assert np.linalg.norm(X[..., group.translations:], axis=-1).max() <= np.pi * (1 + 1e-15)
+    assert np.linalg.norm(X[..., group.translations :], axis=-1).max() <= np.pi * (1 + 1e-15)
 
 
 def test_an_exact_half_turn_has_the_logarithm_with_a_positive_first_component() -> None:
@@ -116,7 +116,7 @@ def test_one_parameter_subgroups_add(group: Group) -> None:
 def test_rotation_vectors_and_matrices_are_inverse(group: Group, angle: float) -> None:
     """The rotation helpers agree with the group's own exponential and with each other."""
     X = with_angle(group, angle, 20, (5,))
-    w = X[..., group.translations:]
+    w = X[..., group.translations :]
     R = rotation_from_vector(w)
     expected = group.rotation(exp(group, X))
     assert np.abs(R - expected).max() <= 1e-15

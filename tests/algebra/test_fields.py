@@ -89,7 +89,7 @@ def test_translation_fields_are_derivatives_along_the_frame_vectors(group: Group
     found = fields.derivatives(group, f, phi)
     for i in range(group.space):
         assert sp.expand(found[i] - sum(R[j, i] * f.diff(r[j]) for j in range(group.space))) == 0
-    assert not any(found[group.translations:])
+    assert not any(found[group.translations :])
 
 
 @BOTH

@@ -33,7 +33,9 @@ from tests.model.trees import NAMES, moderate, trees
 
 HUGE = 1e100
 VALUES = {"u": 0.3, "t": 1.7, "kappa": -2.5, "k_3": 40.0}
-_FUNCTION: dict[str, Any] = {name: getattr(mpmath, name) for name in FUNCTIONS if name not in ("abs", "heaviside")}
+_FUNCTION: dict[str, Any] = {
+    name: getattr(mpmath, name) for name in FUNCTIONS if name not in ("abs", "heaviside")
+}
 _FUNCTION |= {"abs": abs, "heaviside": lambda x: mpmath.mpf((x > 0) + (x >= 0)) / 2}
 
 
@@ -124,7 +126,13 @@ def test_a_tower_of_powers_is_infinite_and_quick() -> None:
 
 @pytest.mark.parametrize(
     ("text", "value"),
-    [("1/0", math.inf), ("-1/0", -math.inf), ("0/0", math.nan), ("log(-1)", math.nan), ("sqrt(-1)", math.nan)],
+    [
+        ("1/0", math.inf),
+        ("-1/0", -math.inf),
+        ("0/0", math.nan),
+        ("log(-1)", math.nan),
+        ("sqrt(-1)", math.nan),
+    ],
 )
 def test_what_has_no_value_is_not_finite_and_warns_of_nothing(text: str, value: float) -> None:
     """Outside a domain the value is NaN or infinite, for the caller to refuse."""
@@ -217,7 +225,10 @@ def test_steps_inside_the_rod_are_boundaries(text: str, places: tuple[float, ...
 @pytest.mark.parametrize(
     ("text", "wording"),
     [
-        ("heaviside(sin(u))", r"heaviside\(sin\(u\)\) is not a step at one place; write steps as heaviside\(u - 0.5\)"),
+        (
+            "heaviside(sin(u))",
+            r"heaviside\(sin\(u\)\) is not a step at one place; write steps as heaviside\(u - 0.5\)",
+        ),
         ("heaviside(u**2 - 0.25)", "not a step at one place"),
         ("heaviside(1/u - 2)", "not a step at one place"),
         ("heaviside(u*(u - 1))", "not a step at one place"),

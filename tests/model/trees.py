@@ -10,7 +10,9 @@ NAMES = frozenset({"u", "t", "kappa", "k_3"})
 
 finite = st.floats(allow_nan=False, allow_infinity=False)
 leaves: st.SearchStrategy[Expression] = st.one_of(
-    finite.map(Number), st.integers(-3, 10).map(lambda n: Number(float(n))), st.sampled_from(sorted(NAMES)).map(Symbol)
+    finite.map(Number),
+    st.integers(-3, 10).map(lambda n: Number(float(n))),
+    st.sampled_from(sorted(NAMES)).map(Symbol),
 )
 
 
@@ -29,7 +31,25 @@ moderate: st.SearchStrategy[Expression] = st.recursive(
 """Trees of moderate numbers, whose values can be compared."""
 
 pieces = st.sampled_from(
-    [*sorted(NAMES), *FUNCTIONS, "pi", "1", "2.5", ".5", "3.", "1e3", "2E-2", "+", "-", "*", "/", "**", "(", ")", " "]
+    [
+        *sorted(NAMES),
+        *FUNCTIONS,
+        "pi",
+        "1",
+        "2.5",
+        ".5",
+        "3.",
+        "1e3",
+        "2E-2",
+        "+",
+        "-",
+        "*",
+        "/",
+        "**",
+        "(",
+        ")",
+        " ",
+    ]
 )
 texts = st.lists(pieces, max_size=30).map("".join)
 """Strings of the right tokens in any order: many parse, many nearly do."""
@@ -39,7 +59,9 @@ def _join(inner: st.SearchStrategy[str]) -> st.SearchStrategy[str]:
     return st.one_of(
         st.tuples(inner, st.sampled_from(["+", "-", "*", "/", "**", " + ", " ** "]), inner).map("".join),
         st.tuples(st.sampled_from(["-", "+", "- "]), inner).map("".join),
-        st.tuples(st.sampled_from(["(", "( ", *(f"{name}(" for name in FUNCTIONS)]), inner, st.just(")")).map("".join),
+        st.tuples(st.sampled_from(["(", "( ", *(f"{name}(" for name in FUNCTIONS)]), inner, st.just(")")).map(
+            "".join
+        ),
     )
 
 

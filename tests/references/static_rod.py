@@ -234,7 +234,7 @@ def _rate(rod: Rod, u: float, flat: Array) -> Array:
     turn = value_at(rod.reference, u) + np.linalg.solve(stiffness_at(rod, u), stress.T).T
     h, bend = turn[:, :3], turn[:, 3:]
     turning = np.cross(rotation, bend[:, None, :], axis=2)  # rows of R Pi^ are row x Pi
-    balance = -np.cross(bend, moment) + np.cross(h, stress[:, :3]) - value_at(rod.body_torque_density, u)
+    balance = -np.cross(bend, moment) - np.cross(h, stress[:, :3]) - value_at(rod.body_torque_density, u)
     pull = -(value_at(rod.weight, u) + rotation @ value_at(rod.body_force_density, u))
     advance = np.einsum("cij,cj->ci", rotation, h)
     return np.concatenate([turning.reshape(-1, 9), balance, pull, advance], axis=1).ravel()

@@ -1,5 +1,7 @@
 """Equilibria of the spatial rod, by closed forms, by collocation and by balances over the whole rod."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -218,6 +220,24 @@ def test_distributed_couple_and_steps_give_their_closed_forms() -> None:
     angle = Rotation.from_matrix(found.tip_rotation).as_rotvec()
     np.testing.assert_allclose(angle, [0.0, 0.0, first + second], atol=1e-12)
     np.testing.assert_allclose(found.base_stress, [0.0, 0.0, 0.0, 0.0, 0.0, couple * length], atol=1e-12)
+
+
+def test_a_named_jump_need_not_be_searched_for() -> None:
+    """Stopping at the jump takes less than half the evaluations that error control needs to find it."""
+
+    asked: list[float] = []
+
+    def reference(u: float) -> Array:
+        asked.append(u)
+        return static_rod.from_planar([1.0, 0.0, 0.0 if u < 0.6 else 2.0])
+
+    found = static_rod.solve(Rod(1.5, DIAGONAL, reference, jumps=(0.6,)))
+    counts = []
+    for jumps in ((0.6,), ()):
+        asked.clear()
+        replace(found, rod=replace(found.rod, jumps=jumps)).at([0.0])
+        counts.append(len(asked))
+    assert counts[0] < 0.5 * counts[1]
 
 
 def test_small_loads_give_the_linear_beam_in_both_directions() -> None:

@@ -1,4 +1,4 @@
-"""Rods whose whole motion is known in closed form: clamped at the origin, of uniform curvature a(t) times a constant."""
+"""Rods whose motion is known in closed form: clamped at the origin, their curvature a(t) times a constant."""
 
 from __future__ import annotations
 
@@ -31,13 +31,14 @@ def grid(elements: int, degree: int, length: float) -> tuple[Array, Array]:
 
 
 def _turned(darboux: Array, theta: Array) -> tuple[Array, Array]:
-    """Rotation exp(theta n^) and the integral of its first column over the angle, n the direction of darboux."""
+    """Rotation exp(theta n^) and the integral of its first column over theta; n is along darboux."""
     n = darboux / np.linalg.norm(darboux)
     hat = np.cross(n, np.eye(3)).T  # hat @ v = n x v
     s, c = np.sin(theta)[..., None, None], (1 - np.cos(theta))[..., None, None]
     rotation = np.eye(3) + s * hat + c * hat @ hat
     angle = theta[..., None]
-    path = angle * np.eye(3)[0] + (1 - np.cos(angle)) * hat[:, 0] + (angle - np.sin(angle)) * (hat @ hat)[:, 0]
+    path = angle * np.eye(3)[0] + (1 - np.cos(angle)) * hat[:, 0]
+    path = path + (angle - np.sin(angle)) * (hat @ hat)[:, 0]
     return rotation, path
 
 
@@ -57,8 +58,8 @@ def rod(
 ) -> Solution:
     """A solution with curvature a(t) darboux and bending and twisting stiffness 1.
 
-    The energy stored is a^2 |darboux|^2 length / 2. A rod that is not driven dissipates what it loses; a driven one
-    dissipates FRICTION times its mean square curvature rate, and the work done on it closes the ledger.
+    The energy stored is a^2 |darboux|^2 length / 2. A rod that is not driven dissipates what it loses; a
+    driven one dissipates FRICTION times its mean square curvature rate, and the work closes the ledger.
     """
     time = np.linspace(0.0, until, frames)
     u, u_point = grid(elements, degree, length)
@@ -88,10 +89,13 @@ def rod(
         angle = a[:, None] * vector[2] * u
     values: dict[str, Any] = {
         "scene": SCENE, "title": "made up", "motion": motion, "length": length,
-        "time": time, "u": u, "u_point": u_point, "position": position, "rotation": rotation, "angle": angle,
-        "twist": twist, "turn": turn, "stress": stress, "energy": energy, "dissipated": dissipated, "work": work,
+        "time": time, "u": u, "u_point": u_point,
+        "position": position, "rotation": rotation, "angle": angle,
+        "twist": twist, "turn": turn, "stress": stress,
+        "energy": energy, "dissipated": dissipated, "work": work,
         "method": "radau", "elements": elements, "degree": degree, "unknowns": turn[0].size, "backend": "c",
-        "requested": 1e-6, "estimated": 0.1 + 0.2, "evaluations": {"rate": 120, "jacobian": 7, "steps": 31},
+        "requested": 1e-6, "estimated": 0.1 + 0.2,
+        "evaluations": {"rate": 120, "jacobian": 7, "steps": 31},
         "seconds": {"derive": 0.0, "compile": 0.0, "plan": 1 / 3, "solve": 0.012},
         "provenance": {"geocosserat": "0.1", "kernel": "abc"}, "reached": True, "reason": "",
     }

@@ -1,0 +1,41 @@
+"""One door to all integrators, chosen by name. Nothing here knows what a rod is."""
+
+import numpy as np
+
+from geocosserat.kernel.contract import Array, Kernel
+from geocosserat.solver.cvode import cvode
+from geocosserat.solver.scipy_methods import METHODS as SCIPY
+from geocosserat.solver.scipy_methods import scipy_method
+from geocosserat.solver.trajectory import Progress, Trajectory
+
+METHODS = ("cvode", *SCIPY)
+
+
+def _silent(fraction: float, steps: int) -> None:
+    pass
+
+
+def integrate(
+    kernel: Kernel,
+    start: Array,
+    times: Array,
+    method: str = "cvode",
+    rtol: float = 1e-6,
+    atol: float | Array = 1e-9,
+    progress: Progress = _silent,
+) -> Trajectory:
+    """Integrates y' = f(t, y) from `start` (size,) at times[0]; states at all of `times` (T >= 2, increasing).
+
+    rtol, and atol for all or for each state entry (in its own unit), bound the local error of a step. A run that
+    cannot go on returns what it has, with the reason; it never raises for numerical trouble.
+
+    Raises ValueError for an unknown method, or a start that is not finite.
+    """
+    if method not in METHODS:
+        raise ValueError(f"expected a method out of {', '.join(METHODS)}, found {method!r}")
+    if not np.all(np.isfinite(start)):
+        raise ValueError("expected a finite initial state, found infinities or NaN; check the start of the scene")
+    tolerance = np.broadcast_to(np.asarray(atol, dtype=float), start.shape).copy()
+    if method == "cvode":
+        return cvode(kernel, start, times, rtol, tolerance, progress)
+    return scipy_method(method, kernel, start, times, rtol, tolerance, progress)

@@ -1,0 +1,64 @@
+"""The stiff integrators of scipy: Radau IIA of order 5, BDF, and LSODA.
+
+Source: E. Hairer and G. Wanner, "Solving Ordinary Differential Equations II" (1996); L. Petzold,
+SIAM J. Sci. Stat. Comput. 4 (1983) 136.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+from scipy.integrate import BDF, LSODA, OdeSolver, Radau
+
+from geocosserat.kernel.contract import Array, Kernel
+from geocosserat.solver.counted import Counted
+from geocosserat.solver.trajectory import Progress, Trajectory
+
+METHODS: dict[str, type[OdeSolver]] = {"radau": Radau, "bdf": BDF, "lsoda": LSODA}
+
+STEP_LIMIT = 1_000_000
+"""Steps after which a run gives up."""
+
+
+def scipy_method(
+    method: str, kernel: Kernel, start: Array, times: Array, rtol: float, atol: Array, progress: Progress
+) -> Trajectory:
+    """Integrates from times[0] through all of `times` with one of METHODS; see `integrate`."""
+    counted = Counted(kernel)
+    solver = METHODS[method](
+        _fresh(counted), times[0], start.copy(), times[-1], rtol=rtol, atol=atol, jac=counted.jacobian
+    )
+    states = np.empty((len(times), kernel.size))
+    states[0] = start
+    done, steps, reason = 1, 0, ""
+    while solver.status == "running" and done < len(times):
+        if steps == STEP_LIMIT:
+            reason = f"{method} stopped at t = {solver.t:.6g}: {STEP_LIMIT} steps did not reach the end"
+            break
+        message = solver.step()
+        steps += 1
+        if solver.status == "failed":
+            reason = f"{method} stopped at t = {solver.t:.6g}: {message}"
+            break
+        interpolant = None
+        while done < len(times) and times[done] <= solver.t:
+            if times[done] == solver.t:
+                states[done] = solver.y
+            else:
+                interpolant = interpolant or solver.dense_output()
+                states[done] = interpolant(times[done])
+            done += 1
+        progress((solver.t - times[0]) / (times[-1] - times[0]), steps)
+    return Trajectory(
+        times[:done].copy(), states[:done], counted.rates, counted.jacobians, steps, done == len(times), reason
+    )
+
+
+def _fresh(counted: Counted) -> Callable[[float, Array], Array]:
+    """scipy keeps the arrays it is given, so each call gets a new one."""
+
+    def rate(t: float, y: Array) -> Array:
+        out = np.empty_like(y)
+        counted.rate(t, np.ascontiguousarray(y), out)
+        return out
+
+    return rate

@@ -1,0 +1,26 @@
+"""What an integrator returns, and what it may tell while it works."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from geocosserat.kernel.contract import Array
+
+Progress = Callable[[float, int], None]
+"""Called with the fraction of the time span done and the number of steps so far."""
+
+
+@dataclass(frozen=True, eq=False)
+class Trajectory:
+    """States at the instants asked for.
+
+    times (T,), states (T, size): up to the last instant that was reached. reached: whether that is the last one
+    asked for; otherwise `reason` says why not. Counts: calls of the rate, of the Jacobian, steps tried.
+    """
+
+    times: Array
+    states: Array
+    rates: int
+    jacobians: int
+    steps: int
+    reached: bool
+    reason: str = ""

@@ -1,0 +1,70 @@
+"""The scenes in ``examples/``: each loads, says what one sees, and shows what its name says."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from geocosserat.model.expressions import evaluate, jump_positions, symbols
+from geocosserat.model.scene import load_scene
+
+EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.toml"))
+NAMES = {file.stem for file in EXAMPLES}
+PROMISED = {
+    "cantilever", "chiral", "circle", "elastica", "follower", "hanging", "helix", "sinking", "stepped",
+}  # fmt: skip
+
+
+def test_the_promised_examples_are_there() -> None:
+    """Deleting an example is noticed."""
+    assert PROMISED <= NAMES
+
+
+@pytest.mark.parametrize("file", EXAMPLES, ids=lambda file: file.stem)
+def test_every_example_loads_and_says_what_one_sees(file: Path) -> None:
+    """The first line is one comment; the scene has a title, an accuracy and prints itself."""
+    scene = load_scene(file)
+    first, second = file.read_text(encoding="utf-8").splitlines()[:2]
+    assert first.startswith("# ")
+    assert 60 < len(first) <= 120
+    assert second.startswith("title = ")
+    assert scene.run.accuracy == 1e-6
+    printed = str(scene)
+    assert scene.title in printed
+    assert all(name in printed for name in scene.model.group.strain + scene.model.group.twist)
+
+
+def test_the_cantilever_is_the_measured_one() -> None:
+    """The numbers of the cantilever whose tip is known to ten digits."""
+    scene = load_scene(next(file for file in EXAMPLES if file.stem == "cantilever"))
+    model = scene.model
+    assert model.parameters == {"kappa": 1e4}
+    assert [evaluate(model.stiffness[i][i], model.parameters) for i in range(3)] == [1e4, 1e4, 1.0]
+    assert [evaluate(model.friction[i][i], {}) for i in range(3)] == [1.0, 1.0, 0.01]
+    u = np.linspace(0, 1, 5)
+    np.testing.assert_allclose(evaluate(scene.start.strain[2], {"u": u}), 3 * (1 - u) ** 2 * (1 + 2 * u))
+    assert (model.left.kind, model.right.kind) == ("clamped", "free")
+    assert (scene.run.until, scene.run.frames) == (0.05, 51)
+
+
+def test_the_examples_show_what_their_names_say() -> None:
+    """Every kind of thing the format offers occurs in some example."""
+    scenes = {file.stem: load_scene(file) for file in EXAMPLES}
+    helix = scenes["helix"].model
+    assert len({evaluate(helix.stiffness[i][i], helix.parameters) for i in range(6)}) == 6
+    assert len({evaluate(helix.friction[i][i], helix.parameters) for i in range(6)}) == 6
+    assert helix.right.frame == "world"
+    assert scenes["sinking"].model.left.kind == scenes["sinking"].model.right.kind == "free"
+    assert scenes["hanging"].model.effects
+    stepped = scenes["stepped"].model
+    assert jump_positions(stepped.stiffness[2][2], stepped.length, stepped.parameters) == (0.5,)
+    assert symbols(scenes["chiral"].model.stiffness[3][5]) == {"coupling"}
+    follower = scenes["follower"].model.right
+    assert follower.frame == "body"
+    assert follower.force is not None
+    assert "t" in symbols(follower.force[1])
+    circle = scenes["circle"].model
+    assert circle.right.torque is not None
+    assert evaluate(circle.right.torque[0], circle.parameters) == pytest.approx(2 * np.pi)
