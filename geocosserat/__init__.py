@@ -1,0 +1,6 @@
+"""Slender bodies in slow viscous flow: overdamped Cosserat rods on SE(2) and SE(3)."""
+
+from geocosserat.conductor import run
+from geocosserat.version import VERSION as __version__
+
+__all__ = ["__version__", "run"]

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -150,15 +151,38 @@ def jets(expressions: Iterable[sp.Expr]) -> set[sp.Expr]:
 
 def value(e: sp.Expr, explicit: dict[str, sp.Expr], u: sp.Rational, t: sp.Rational) -> sp.Expr:
     """e at (u, t) to 40 digits where the fields are these functions of (u, t); parameters at VALUES."""
-    at = {U: u, T: t}
     numbers = {}
     for jet in jets([e]):
         base = jet.expr if isinstance(jet, sp.Derivative) else jet
-        function = explicit[base.func.__name__]
-        for variable, order in jet.variable_count if isinstance(jet, sp.Derivative) else ():
-            function = function.diff(variable, order)
-        numbers[jet] = function.evalf(DIGITS, subs=at)
+        orders = jet.variable_count if isinstance(jet, sp.Derivative) else ()
+        numbers[jet] = _number(explicit[base.func.__name__], tuple(tuple(x) for x in orders), u, t)
     return substituted(e, numbers, u, t)
+
+
+@lru_cache(maxsize=10_000)
+def _number(
+    function: sp.Expr, orders: tuple[tuple[sp.Symbol, int], ...], u: sp.Rational, t: sp.Rational
+) -> sp.Expr:
+    for variable, order in orders:
+        function = function.diff(variable, order)
+    return function.evalf(DIGITS, subs={U: u, T: t})
+
+
+@lru_cache(maxsize=100)
+def random_motion(group: Group, seed: int) -> Motion:
+    """A random motion, the same for the same seed."""
+    return Motion(group, seed)
+
+
+def in_full(e: sp.Expr, explicit: dict[str, sp.Expr]) -> sp.Expr:
+    """e, without derivatives of fields, as a function of (u, t) alone; parameters at VALUES."""
+    functions = {jet: explicit[jet.func.__name__] for jet in jets([e])}
+    return e.xreplace(functions).xreplace(parameters(e))
+
+
+def parameters(e: sp.Expr) -> dict[sp.Symbol, sp.Rational]:
+    """The parameters that occur and their exact VALUES."""
+    return {s: sp.Rational(str(VALUES[s.name])) for s in e.free_symbols if s.name in VALUES}
 
 
 def random_value(e: sp.Expr, seed: int) -> sp.Expr:
@@ -172,14 +196,11 @@ def random_value(e: sp.Expr, seed: int) -> sp.Expr:
 
 def substituted(e: sp.Expr, numbers: dict[sp.Expr, sp.Expr], u: sp.Rational, t: sp.Rational) -> sp.Expr:
     """e with numbers for its jets, coordinates and parameters, to 40 digits."""
-    names = {s: sp.Rational(str(VALUES[s.name])) for s in e.free_symbols if s.name in VALUES}
     derivatives = {k: v for k, v in numbers.items() if isinstance(k, sp.Derivative)}
-    return e.xreplace(derivatives).xreplace(numbers).xreplace({U: u, T: t, **names}).evalf(DIGITS)
+    return e.xreplace(derivatives).xreplace(numbers).xreplace({U: u, T: t, **parameters(e)}).evalf(DIGITS)
 
 
 POINTS: Sequence[tuple[sp.Rational, sp.Rational]] = (
     (sp.Rational(1, 3), sp.Rational(2, 7)),
     (sp.Rational(11, 13), sp.Rational(-4, 9)),
 )
-
-Check = Callable[[RodModel], None]

@@ -12,7 +12,7 @@ import sympy as sp
 from geocosserat.algebra.groups import SE2, SE3
 from geocosserat.derivation.convert import to_sympy
 from geocosserat.derivation.equations import derive
-from geocosserat.derivation.notation import T, U, field
+from geocosserat.derivation.notation import T, U, field, is_field
 from geocosserat.model.expressions import evaluate
 from geocosserat.model.records import End, RodModel, Weight
 from tests.derivation.rods import (
@@ -24,12 +24,11 @@ from tests.derivation.rods import (
     RODS,
     TINY,
     VALUES,
-    Motion,
     diagonal,
-    jets,
+    in_full,
+    random_motion,
     random_value,
     smooth,
-    straight,
     value,
     vector,
 )
@@ -42,7 +41,7 @@ HEAVY = pytest.mark.parametrize("model", [HEAVY_PLANAR, HEAVY_SPATIAL], ids=["pl
 def test_compatibility_is_the_equality_of_mixed_partials(model: RodModel) -> None:
     """Turn and twist of one smooth configuration field satisfy it, whatever the motion."""
     equations = derive(model)
-    explicit = Motion(model.group, 41).fields()
+    explicit = random_motion(model.group, 41).fields()
     for u, t in POINTS:
         for equation in equations.compatibility:
             assert abs(value(equation.residual, explicit, u, t)) < TINY, equation
@@ -52,8 +51,8 @@ def test_compatibility_is_the_equality_of_mixed_partials(model: RodModel) -> Non
 @ALL
 def test_compatibility_tells_turn_and_twist_of_different_motions_apart(model: RodModel) -> None:
     """The twist of another motion violates it."""
-    explicit = Motion(model.group, 41).fields()
-    other = Motion(model.group, 43).fields()
+    explicit = random_motion(model.group, 41).fields()
+    other = random_motion(model.group, 43).fields()
     mixed = explicit | {name: other[name] for name in model.group.twist}
     residuals = [abs(value(e.residual, mixed, *POINTS[0])) for e in derive(model).compatibility]
     assert min(residuals) > 1e-6
@@ -61,9 +60,9 @@ def test_compatibility_tells_turn_and_twist_of_different_motions_apart(model: Ro
 
 @ALL
 def test_the_balance_is_that_of_forces_and_moments_in_the_world(model: RodModel) -> None:
-    """R times the left side is F' + f and M' + r' x F + m of the vectors themselves, for any stress and wrench."""
+    """R times the left side is F' + f and M' + r' x F + m of the vectors, for any stress and wrench."""
     group, equations = model.group, derive(model)
-    motion = Motion(group, 44)
+    motion = random_motion(group, 41)
     rng = np.random.default_rng(45)
     S, j = (np.array([smooth(rng) for _ in range(group.dimension)], dtype=object) for _ in range(2))
     explicit = motion.fields() | dict(zip((*group.stress, *group.wrench), (*S, *j), strict=True))
@@ -112,7 +111,7 @@ def test_the_stress_law_is_stiffness_times_strain(model: RodModel) -> None:
 def test_the_wrench_is_drag_and_weight_seen_in_the_moving_frame(model: RodModel) -> None:
     """j = -Gamma V + R^T f: turned back into the world, the weight is the force density of the scene."""
     group, equations = model.group, derive(model)
-    motion = Motion(group, 47)
+    motion = random_motion(group, 41)
     u, t = POINTS[0]
     at = {**VALUES, "u": float(u), "t": float(t)}
     Gamma = np.array([[evaluate(e, at) for e in row] for row in model.friction])
@@ -131,7 +130,7 @@ def test_the_wrench_is_drag_and_weight_seen_in_the_moving_frame(model: RodModel)
 def test_orientation_fields_follow_the_moving_frame(model: RodModel) -> None:
     """The frame of a smooth motion satisfies their rates in time and along the rod."""
     equations = derive(model)
-    explicit = Motion(model.group, 48).fields()
+    explicit = random_motion(model.group, 41).fields()
     for u, t in POINTS:
         for equation in (*equations.orientation_rates, *equations.orientation_slopes):
             assert abs(value(equation.residual, explicit, u, t)) < TINY, equation
@@ -140,9 +139,9 @@ def test_orientation_fields_follow_the_moving_frame(model: RodModel) -> None:
 
 @ALL
 def test_the_motion_is_the_balance_with_the_laws_put_in(model: RodModel) -> None:
-    """friction minus push = -(balance) once stress and wrench are replaced by their laws, at random turn and twist."""
+    """Friction minus push is minus the balance, once stress and wrench are replaced by their laws."""
     group, equations = model.group, derive(model)
-    explicit = Motion(group, 49).fields()
+    explicit = random_motion(group, 41).fields()
     stress, wrench = (
         {e.left.func.__name__: in_full(e.right, explicit) for e in law}
         for law in (equations.stress_law, equations.wrench_law)
@@ -155,14 +154,9 @@ def test_the_motion_is_the_balance_with_the_laws_put_in(model: RodModel) -> None
         assert not motion.residual.has(*equations.wrench)
 
 
-def in_full(e: sp.Expr, explicit: dict[str, sp.Expr]) -> sp.Expr:
-    """e as a function of (u, t) alone."""
-    return e.xreplace({jet: explicit[jet.func.__name__] for jet in jets([e])})
-
-
 @ALL
 def test_stored_energy_changes_by_work_minus_dissipation(model: RodModel) -> None:
-    """d/dt energy + dissipation - power of the weight - (S.V)' vanishes wherever the motion holds, point by point."""
+    """d/dt energy + dissipation - power of the weight - (S.V)' vanishes wherever the motion holds."""
     equations = derive(model)
     rates = {e.left: e.right for e in equations.compatibility}
     assert equations.energy is not None
@@ -210,7 +204,7 @@ def test_a_planar_rod_is_a_spatial_rod_in_the_plane(weight: tuple[str, ...]) -> 
     kept = {"h1", "h2", "v1", "v2", "F1", "F2", "f1", "f2"}
 
     def in_plane(e: sp.Expr) -> sp.Expr:
-        functions = {jet.expr if isinstance(jet, sp.Derivative) else jet for jet in jets([e])}
+        functions = {f for f in e.atoms(sp.Function) if is_field(f)}
         image = {}
         for f in functions:
             name = f.func.__name__
@@ -229,7 +223,7 @@ def test_a_planar_rod_is_a_spatial_rod_in_the_plane(weight: tuple[str, ...]) -> 
 
 
 def test_in_space_the_components_are_cross_products() -> None:
-    """h_t = v' + Pi x v - Omega x h, Pi_t = Omega' + Pi x Omega, and the balance with Pi x F, Pi x M and h x F."""
+    """h_t = v' + Pi x v - Omega x h, Pi_t = Omega' + Pi x Omega; the balance has Pi x F, Pi x M, h x F."""
     equations = derive(PLAIN_SPATIAL)
     E, V, S, j = (
         np.array(x, dtype=object)
@@ -247,14 +241,14 @@ def test_in_space_the_components_are_cross_products() -> None:
 @pytest.mark.parametrize("group", [SE2, SE3], ids=["planar", "spatial"])
 @pytest.mark.parametrize("frame", ["body", "world"])
 def test_the_stress_at_a_loaded_end_does_the_power_of_the_load(side: str, group: object, frame: str) -> None:
-    """Outward stress times twist at the end is force . velocity + torque . angular velocity, in the world or the body."""
+    """Outward stress times twist is force . velocity + torque . angular velocity, in the frame of the load."""
     model = HEAVY_PLANAR if group is SE2 else HEAVY_SPATIAL
     load = (
         (vector("a", "b*t"), vector("g")) if group is SE2 else (vector("a", "b*t", "g"), vector(1, "t", "a"))
     )
     end = End("free", force=load[0], torque=load[1], frame="body" if frame == "body" else "world")
     equations = derive(dataclasses.replace(model, effects=(), **{side: end}))
-    motion = Motion(model.group, 53)
+    motion = random_motion(model.group, 41)
     n, R = model.group.space, motion.rotation
     force, torque = ([to_sympy(x) for x in part] for part in load)
     v, Omega = motion.twist[:n], motion.twist[n:]
@@ -280,7 +274,7 @@ def test_a_clamped_end_does_not_move_and_a_free_end_carries_nothing() -> None:
 
 
 def test_a_rod_that_does_not_see_the_world_has_no_orientation() -> None:
-    """Without weight or dead load there is no orientation field, equation or term; a follower load needs none."""
+    """Without weight or dead load there is no orientation field or equation; a follower load needs none."""
     follower = dataclasses.replace(PLAIN_SPATIAL, right=End("free", force=vector(0, "a", 0), frame="body"))
     for model in (PLAIN_PLANAR, PLAIN_SPATIAL, follower):
         equations = derive(model)
@@ -334,7 +328,7 @@ def test_the_terms_are_listed_in_words() -> None:
 
 
 def test_where_the_law_steps_the_stress_stays_a_field() -> None:
-    """A stepped stiffness would put a point source into S(E)'; the stress is continuous there, so it is kept."""
+    """A stepped stiffness would put a point source into S(E)'; the stress is continuous, so it is kept."""
     stepped = derive(dataclasses.replace(PLAIN_PLANAR, stiffness=diagonal("1 + heaviside(u - 0.5)", 1, 1)))
     assert not any(e.right.has(sp.DiracDelta) for e in stepped.motion)
     assert stepped.motion[0].right.has(field("F1").diff(U))

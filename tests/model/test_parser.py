@@ -1,4 +1,4 @@
-"""The expression parser: it agrees with Python's grammar, and no text makes it do anything but parse or refuse."""
+"""The expression parser: it agrees with Python's grammar, and any text is parsed or refused."""
 
 from __future__ import annotations
 
@@ -166,7 +166,7 @@ def test_any_text_parses_or_is_refused(text: str) -> None:
     ],
 )
 def test_what_is_not_arithmetic_is_refused_with_what_to_do(text: str, wording: str) -> None:
-    """Code, quotes, attributes, other languages' operators and look-alike letters each get a message of their own."""
+    """Code, quotes, attributes, other languages' operators, look-alike letters: each has a message of its own."""
     with pytest.raises(ExpressionError, match=wording):
         parse(text, NAMES)
 

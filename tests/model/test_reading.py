@@ -1,4 +1,4 @@
-"""Files and texts: unreadable, hostile or merely odd ones are refused at once, with the line where there is one."""
+"""Files and texts: unreadable, hostile or odd ones are refused at once, with the line if there is one."""
 
 from __future__ import annotations
 
@@ -100,7 +100,7 @@ def test_files_of_other_editors_are_read(tmp_path: Path, content: str) -> None:
     ids=range(25),
 )
 def test_a_file_that_is_no_scene_is_refused_at_once(tmp_path: Path, content: bytes, wording: str) -> None:
-    """Wrong encoding, wrong syntax, wrong size, made to take forever: one short printable message, quickly."""
+    """Wrong encoding, wrong syntax, wrong size, made to take forever: one short message, quickly."""
     file = tmp_path / "scene.toml"
     file.write_bytes(content)
     begin = time.perf_counter()

@@ -1,0 +1,308 @@
+"""The one module that sees all stages: from a scene to a solution.
+
+    scene -> structure -> kernel text (shipped, cached, or generated) -> kernel -> trajectory -> solution
+
+Symbolic algebra, code generation and plotting are imported only when they are needed: a run whose kernel is
+already built starts in a fraction of a second.
+"""
+
+import os
+import platform
+import sys
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from geocosserat.accuracy import DEFAULT_ACCURACY, Setting, ladder, position_gap
+from geocosserat.codegen.identity import identity
+from geocosserat.discretisation.semidiscrete import SemiDiscrete, discretise
+from geocosserat.discretisation.structure import RodStructure
+from geocosserat.kernel.compile import CompileError, compiler
+from geocosserat.kernel.contract import Array
+from geocosserat.kernel.library import KernelText, find, store
+from geocosserat.kernel.load import load
+from geocosserat.kernel.native import NativeRod
+from geocosserat.kernel.pure import NumpyRod
+from geocosserat.model.errors import InputError
+from geocosserat.model.records import Scene
+from geocosserat.model.scene import load_scene
+from geocosserat.results.netcdf import save
+from geocosserat.results.progress import progress
+from geocosserat.results.solution import Solution
+from geocosserat.results.summary import summary, write_summary
+from geocosserat.solver.integrate import integrate
+from geocosserat.solver.trajectory import Trajectory
+from geocosserat.version import VERSION
+
+SceneLike = str | os.PathLike[str] | Mapping[str, Any] | Scene
+SOLUTION, PICTURE, SUMMARY = "solution.nc", "picture.png", "summary.json"
+
+
+@dataclass(frozen=True)
+class Run:
+    """What `run` returns: the solution, and the fields of ``run --json`` as attributes (tip, ledger, error, ...)."""
+
+    solution: Solution
+    fields: Mapping[str, Any]
+
+    def __getattr__(self, name: str) -> Any:
+        try:
+            return self.__dict__["fields"][name]
+        except KeyError:
+            raise AttributeError(f"a run has no field {name!r}; it has {', '.join(self.fields)}") from None
+
+
+class _Clock:
+    """Seconds spent on each kind of work."""
+
+    def __init__(self) -> None:
+        self.seconds = dict.fromkeys(("derive", "compile", "plan", "solve"), 0.0)
+
+    @contextmanager
+    def __call__(self, kind: str) -> Iterator[None]:
+        start = time.perf_counter()
+        try:
+            yield
+        finally:
+            self.seconds[kind] += time.perf_counter() - start
+
+
+@dataclass(frozen=True, eq=False)
+class _Attempt:
+    """One simulation at one setting."""
+
+    setting: Setting
+    rod: SemiDiscrete
+    kernel: NativeRod | NumpyRod
+    trajectory: Trajectory
+    origin: str
+
+
+def load_any(scene: SceneLike, settings: Sequence[str] = ()) -> Scene:
+    """The scene itself, or the one that a path, TOML text or mapping describes, with `settings` applied.
+
+    Raises InputError as `load_scene`.
+    """
+    if isinstance(scene, Scene):
+        return load_scene(scene.source, settings) if settings else scene
+    return load_scene(scene, settings)
+
+
+def kernel_text(structure: RodStructure) -> KernelText:
+    """The kernel of a structure: shipped, cached, or generated now (the only case that needs symbolic algebra)."""
+    name = identity(structure)
+    found = find(name)
+    if found is not None:
+        return found
+    from geocosserat.codegen.source import generate as generate_source
+
+    source = generate_source(structure)
+    return store(name, source.c, source.numpy, source.signature)
+
+
+def choose_backend(asked: str, tell: Callable[[str], None]) -> str:
+    """ "c" or "numpy"; says so when numpy takes over for want of a compiler.
+
+    Raises InputError if C was asked for and there is no compiler.
+    """
+    if asked == "numpy":
+        return "numpy"
+    if compiler() is not None:
+        return "c"
+    if asked == "c":
+        raise InputError("a C compiler", "none on the path", 'install one, or set backend = "numpy"', key="run.backend")
+    tell("no C compiler found: running on numpy, with the same results in more time")
+    return "numpy"
+
+
+def tolerances(rod: SemiDiscrete, rtol: float, atol: float | None, energy: float) -> Array:
+    """Absolute tolerance of each state entry, (size,): `atol` for strains, or rtol where none is given.
+
+    Strains count by the displacement they make: stretches as they are, curvatures in units of 1 / length, and so
+    for the carried pose. The two energies count by the energy stored at the start, or that of bending by a radian.
+    """
+    strain = rtol if atol is None else atol
+    length, group = float(rod.mesh.edges[-1]), rod.structure.group
+    points = rod.mesh.elements * rod.mesh.degree
+    turn = np.repeat([strain] * group.translations + [strain / length] * group.rotations, points)
+    carried = [strain * length] * group.translations + [strain] * (rod.structure.carried - group.translations)
+    return np.concatenate([turn, carried[: rod.structure.carried], [strain * energy] * 2])
+
+
+def _unit_of_energy(scene: Scene, rod: SemiDiscrete, kernel: NativeRod | NumpyRod) -> float:
+    """Energy stored at the start, or that of bending the softest way by a radian if that is more."""
+    from geocosserat.model.expressions import evaluate
+
+    model, group = scene.model, scene.model.group
+    middle = {**model.parameters, "u": model.length / 2}
+    soft = min(float(evaluate(model.stiffness[i][i], middle)) for i in range(group.translations, group.dimension))
+    return max(kernel.observe(0.0, rod.state)[2], soft / model.length)
+
+
+def _attempt(scene: Scene, setting: Setting, backend: str, clock: _Clock, kind: str, label: str) -> _Attempt:
+    """Simulates at one setting; `kind` is where its time is booked."""
+    with clock("derive"):
+        rod = discretise(scene, setting.elements, setting.degree)
+        text = kernel_text(rod.structure)
+    with clock("compile"):
+        kernel = load(text, rod, backend)
+    times = np.linspace(0.0, scene.run.until, scene.run.frames)
+    atol = tolerances(rod, setting.rtol, scene.run.atol, _unit_of_energy(scene, rod, kernel))
+    with clock(kind), progress(label) as report:
+        trajectory = integrate(kernel, rod.state, times, scene.run.method or "cvode", setting.rtol, atol, report)
+    return _Attempt(setting, rod, kernel, trajectory, text.origin)
+
+
+def _chosen(scene: Scene) -> Setting | None:
+    """The setting the scene fixes, if it fixes any part of one."""
+    run = scene.run
+    if run.elements is None and run.degree is None and run.rtol is None:
+        return None
+    rtol = run.rtol if run.rtol is not None else (run.accuracy or DEFAULT_ACCURACY) / 10
+    return Setting(run.elements or 1, run.degree or 8, rtol)
+
+
+def _solve(scene: Scene, backend: str, clock: _Clock) -> tuple[_Attempt, float | None]:
+    """The attempt to report and the estimate of its error, relative to the length."""
+    chosen = _chosen(scene)
+    if chosen is not None:
+        return _attempt(scene, chosen, backend, clock, "solve", scene.title), None
+    accuracy = scene.run.accuracy or DEFAULT_ACCURACY
+    last: tuple[_Attempt, Array] | None = None
+    estimate: float | None = None
+    for setting in ladder(accuracy):
+        before = dict(clock.seconds)
+        now = _attempt(scene, setting, backend, clock, "solve", scene.title)
+        positions = now.rod.poses(now.trajectory.states[-1]).position
+        if last is not None:
+            clock.seconds["plan"] += before["solve"] - clock.seconds["plan"]  # what came before was planning
+            clock.seconds["solve"] -= before["solve"]
+            if now.trajectory.reached and last[0].trajectory.reached:
+                gap = position_gap(last[0].rod.mesh, last[1], now.rod.mesh, positions)
+                estimate = gap / scene.model.length
+                if estimate <= accuracy:
+                    break
+        last = now, positions
+    return now, estimate
+
+
+def _solution(scene: Scene, attempt: _Attempt, estimate: float | None, clock: _Clock) -> Solution:
+    rod, kernel, trajectory = attempt.rod, attempt.kernel, attempt.trajectory
+    seen = [kernel.observe(float(t), y) for t, y in zip(trajectory.times, trajectory.states, strict=True)]
+    poses = rod.poses(trajectory.states)
+    accuracy = scene.run.accuracy
+    missed = estimate is not None and estimate > (accuracy or DEFAULT_ACCURACY)
+    return Solution(
+        scene=scene.source,
+        title=scene.title,
+        motion=rod.structure.motion,
+        length=scene.model.length,
+        time=trajectory.times,
+        u=rod.mesh.u,
+        u_point=rod.mesh.u_point,
+        position=poses.position,
+        rotation=poses.rotation,
+        angle=poses.angle,
+        twist=np.stack([twist.T for twist, _, _ in seen]),
+        turn=rod.turn(trajectory.states).swapaxes(-1, -2),
+        stress=np.stack([stress.T for _, stress, _ in seen]),
+        energy=np.array([energy for _, _, energy in seen]),
+        dissipated=trajectory.states[:, -2],
+        work=trajectory.states[:, -1],
+        method=scene.run.method or "cvode",
+        elements=rod.mesh.elements,
+        degree=rod.mesh.degree,
+        unknowns=rod.unknowns,
+        backend=kernel.backend,
+        requested=accuracy,
+        estimated=estimate,
+        evaluations={"rate": trajectory.rates, "jacobian": trajectory.jacobians, "steps": trajectory.steps},
+        seconds=clock.seconds,
+        provenance=_provenance(rod, attempt),
+        reached=trajectory.reached and not missed,
+        reason=trajectory.reason or ("the accuracy asked for was not reached by refinement" if missed else ""),
+    )
+
+
+def _provenance(rod: SemiDiscrete, attempt: _Attempt) -> dict[str, str]:
+    return {
+        "geocosserat": VERSION,
+        "python": platform.python_version(),
+        "numpy": np.__version__,
+        "platform": platform.platform(),
+        "kernel": identity(rod.structure),
+        "kernel_origin": attempt.origin,
+        "rtol": repr(attempt.setting.rtol),
+        "date": datetime.now(UTC).isoformat(timespec="seconds"),
+    }
+
+
+def _claim(folder: Path, overwrite: bool) -> None:
+    """Makes sure, before anything is computed, that results can be written and that none are lost."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        writable = os.access(folder, os.W_OK | os.X_OK)
+    except OSError as error:
+        raise InputError("a folder to write to", str(error), "choose another --out", key="--out") from error
+    if not writable:
+        raise InputError("a folder that can be written", f"{folder}, read-only", "choose another --out", key="--out")
+    kept = [name for name in (SOLUTION, PICTURE, SUMMARY) if (folder / name).exists()]
+    if kept and not overwrite:
+        raise InputError(
+            f"no results yet in {folder}", ", ".join(kept), "choose another --out, or say --overwrite", key="--out"
+        )
+
+
+def _tell(message: str) -> None:
+    print(message, file=sys.stderr)
+
+
+def run(
+    scene: SceneLike,
+    out: str | os.PathLike[str] | None = None,
+    *,
+    settings: Sequence[str] = (),
+    accuracy: float | None = None,
+    overwrite: bool = False,
+) -> Run:
+    """Simulates a scene; writes solution.nc, picture.png and summary.json to `out` if given.
+
+    scene: a path, TOML text, a mapping or a Scene. settings: "key=value" changes to it. accuracy: position error at
+    the end, relative to the length. A run that could not finish is returned too, with `reached` false and the reason.
+
+    Raises InputError for a wrong scene, setting or folder; nothing is computed or written then.
+    """
+    changes = [*settings, *([] if accuracy is None else [f"run.accuracy={accuracy!r}"])]
+    read = load_any(scene, changes)
+    folder = None if out is None else Path(out)
+    if folder is not None:
+        _claim(folder, overwrite)
+    clock = _Clock()
+    backend = choose_backend(read.run.backend, _tell)
+    try:
+        attempt, estimate = _solve(read, backend, clock)
+    except CompileError as error:
+        if read.run.backend == "c":
+            raise
+        _tell(f"{error}\nrunning on numpy instead")
+        attempt, estimate = _solve(read, "numpy", clock)
+    solution = _solution(read, attempt, estimate, clock)
+    files: list[Path] = []
+    if folder is not None:
+        files = [folder / SOLUTION, folder / PICTURE, folder / SUMMARY]
+        _write(solution, files, summary(solution, files, scene=read.path))
+    return Run(solution, summary(solution, files, scene=read.path))
+
+
+def _write(solution: Solution, files: Sequence[Path], fields: Mapping[str, Any]) -> None:
+    from geocosserat.results.picture import picture
+
+    save(solution, files[0])
+    picture(solution, files[1])
+    write_summary(fields, files[2])
