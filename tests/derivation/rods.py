@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from functools import lru_cache
 from typing import Any
 
+import mpmath as mp
 import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
@@ -165,19 +166,15 @@ def _number(
 ) -> sp.Expr:
     for variable, order in orders:
         function = function.diff(variable, order)
-    return function.evalf(DIGITS, subs={U: u, T: t})
+    with mp.workdps(DIGITS + 5):
+        here = sp.lambdify([U, T], function, "mpmath", cse=True)(mp.mpf(u.p) / u.q, mp.mpf(t.p) / t.q)
+        return sp.Float(str(here), DIGITS)
 
 
 @lru_cache(maxsize=100)
 def random_motion(group: Group, seed: int) -> Motion:
     """A random motion, the same for the same seed."""
     return Motion(group, seed)
-
-
-def in_full(e: sp.Expr, explicit: dict[str, sp.Expr]) -> sp.Expr:
-    """e, without derivatives of fields, as a function of (u, t) alone; parameters at VALUES."""
-    functions = {jet: explicit[jet.func.__name__] for jet in jets([e])}
-    return e.xreplace(functions).xreplace(parameters(e))
 
 
 def parameters(e: sp.Expr) -> dict[sp.Symbol, sp.Rational]:
