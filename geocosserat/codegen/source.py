@@ -1,6 +1,7 @@
 """The text of a kernel: tapes of the pointwise expressions, printed into the templates."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import jinja2
@@ -38,13 +39,17 @@ class KernelSource:
 
 @dataclass(frozen=True)
 class Block:
-    """A tape printed for one language, with the inputs it needs by place as (name, slot) pairs."""
+    """A tape printed for one language, with the coefficients it needs by place as (name, slot) pairs.
+
+    needs: names of all its inputs.
+    """
 
     uniform: list[tuple[str, int]]
     point: list[tuple[str, int]]
     node: list[tuple[str, int]]
     steps: list[tuple[str, str]]
     outputs: list[tuple[str, str]]
+    needs: frozenset[str]
 
     def entries(self, stem: str) -> list[tuple[int, int, str]]:
         """Outputs called stem_i_j as (row, column, code), counted from zero."""
@@ -103,7 +108,7 @@ class _Writer:
         used = tape.inputs | also
         steps, outputs = print_tape(tape, self.language)
         place = {p: [(name, i) for name, i in slots.items() if name in used] for p, slots in self.slots.items()}
-        return Block(place["uniform"], place["point"], place["node"], steps, outputs)
+        return Block(place["uniform"], place["point"], place["node"], steps, outputs, used)
 
     def timed(self, along_nodes: bool, coordinate: str = "") -> list[tuple[str, str]]:
         """(name, code) of the time-dependent coefficients that do, or do not, vary along the nodes."""
@@ -151,6 +156,7 @@ class _Writer:
             "rotations": group.rotations,
             "strain": group.strain,
             "twist": group.twist,
+            "values": [f"value_{i + 1}" for i in range(group.dimension)],
             "carried": s.carried,
             "pose": [symbol.name for symbol in pose],
             "world": s.world,
@@ -163,6 +169,18 @@ class _Writer:
             "timed": self.timed(along_nodes=False),
             "timed_nodes": self.timed(along_nodes=True, coordinate="r->u[n]" if self.language == "c" else "self.u"),
         }
+
+
+@lru_cache(maxsize=1)
+def environment() -> jinja2.Environment:
+    """The templates; a key that is missing is an error."""
+    return jinja2.Environment(
+        loader=jinja2.FileSystemLoader(shipped("templates")),
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
 
 
 def generate(structure: RodStructure, title: str = "") -> KernelSource:
@@ -187,13 +205,6 @@ def generate(structure: RodStructure, title: str = "") -> KernelSource:
         "operations": operations,
         **places,
     }
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(shipped("templates")),
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-    )
     heading = {
         "title": title or f"Semi-discrete {structure.motion} rod",
         "version": VERSION,
@@ -206,7 +217,7 @@ def generate(structure: RodStructure, title: str = "") -> KernelSource:
     def text(language: str, template: str) -> str:
         context = _Writer(structure, language).context(tapes, p.pose)
         # the names of places in the heading are lists of names; blocks carry their own
-        rendered = environment.get_template(template).render(**context, **heading)
+        rendered = environment().get_template(template).render(**context, **heading)
         return "\n".join(line.rstrip() for line in rendered.splitlines()) + "\n"
 
     return KernelSource(name, text("c", "rod.c.j2"), text("numpy", "rod.py.j2"), signature)

@@ -70,7 +70,8 @@ def _broken(equation: Equation, left: str, column: int, script: Script, width: i
         line, rest = f"  {' ' * (column - _width(left))}{left} =", script.terms(equation.right)
         hang = " " * (column + 5)
     else:
-        first, *rest = [*script.terms(equation.left), f"= {script.write(equation.right)}"]
+        right = script.terms(equation.right)
+        first, *rest = [*script.terms(equation.left), f"= {right[0]}", *right[1:]]
         line, hang = f"  {first}", " " * 6
     for term in rest:
         if _width(line) + 1 + _width(term) > width:

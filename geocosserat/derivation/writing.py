@@ -8,7 +8,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Final
+from typing import Any, Final
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
@@ -39,6 +39,7 @@ class Script(ABC):
 
     def __init__(self, taken: Iterable[str] = ()) -> None:
         self.taken = frozenset(taken)
+        self._written: dict[sp.Expr, Written] = {}
 
     def write(self, e: sp.Expr) -> str:
         """One expression."""
@@ -46,7 +47,7 @@ class Script(ABC):
 
     def terms(self, e: sp.Expr) -> list[str]:
         """The terms of a sum, each with its sign but a leading plus, to be joined by spaces."""
-        parts = sorted(e.as_ordered_terms(), key=_term_rank) if e.is_Add else [e]
+        parts = _ordered_terms(e) if e.is_Add else [e]
         signed = [(_negative(x), -x if _negative(x) else x) for x in parts]
         positive = next((k for k, (negative, _) in enumerate(signed) if not negative), 0)
         signed.insert(0, signed.pop(positive))
@@ -58,6 +59,11 @@ class Script(ABC):
         return out
 
     def _write(self, e: sp.Expr) -> Written:
+        if e not in self._written:
+            self._written[e] = self._newly(e)
+        return self._written[e]
+
+    def _newly(self, e: sp.Expr) -> Written:
         if e.is_Add:
             return " ".join(self.terms(e)), SUM
         if _negative(e):
@@ -282,15 +288,23 @@ def _ranks(e: sp.Expr, order: tuple[str, ...]) -> list[tuple[int, str]]:
 
 
 def _term_rank(e: sp.Expr) -> tuple[int, list[tuple[int, str]]]:
-    """Derivatives, then products of fields, then single fields, then the rest."""
+    """Derivatives, then products of fields, then single fields, then coordinates and parameters, then numbers."""
     if e.has(sp.Derivative):
         return 0, _ranks(e, _ALONE)
     names = _ranks(e, _IN_PRODUCTS)
-    return (1, names) if len(names) > 1 else (2 if names else 3, _ranks(e, _ALONE))
+    if len(names) > 1:
+        return 1, names
+    return (2 if names else 4 if e.is_number else 3), _ranks(e, _ALONE)
 
 
-def _rank(e: sp.Expr) -> tuple[int, list[tuple[int, str]], str]:
+def _ordered_terms(e: sp.Expr) -> list[sp.Expr]:
+    if has_fields(e):
+        return sorted(e.args, key=lambda x: (_term_rank(x), x.sort_key()))
+    return list(e.as_ordered_terms())
+
+
+def _rank(e: sp.Expr) -> tuple[int, list[tuple[int, str]], Any]:
     """Coefficients before fields, derivatives last; fields in the order of the vector equations."""
     if not has_fields(e):
-        return (0 if e.is_number or e.is_Symbol else 1, [], str(e))
-    return (3 if e.has(sp.Derivative) else 2, _ranks(e, _IN_PRODUCTS), str(e))
+        return (-1 if e.is_number else 0 if e.is_Symbol else 1, [], e.sort_key())
+    return (3 if e.has(sp.Derivative) else 2, _ranks(e, _IN_PRODUCTS), e.sort_key())

@@ -19,14 +19,13 @@ import h5netcdf  # type: ignore[import-untyped]
 from geocosserat.results import seal
 from geocosserat.results.atomic import write_bytes
 from geocosserat.results.errors import FileError
-from geocosserat.results.solution import SHAPES, Solution
+from geocosserat.results.solution import SHAPES, TEXTS, Solution
 
 if TYPE_CHECKING:
     import xarray
 
 FORMAT = "geocosserat solution 1"
 _DICTIONARIES = ("evaluations", "seconds", "provenance")
-_TEXTS = ("scene", "title", "motion", "method", "backend", "reason")
 _INTEGERS = ("elements", "degree", "unknowns", "reached")
 _NUMBERS = ("length", "requested", "estimated")
 
@@ -68,7 +67,7 @@ def load(path: str | os.PathLike[str]) -> Solution:
                             "read it with the version that wrote it, named in its attribute `provenance`")
         values: dict[str, Any] = {name: variable[...] for name, variable in file.variables.items()}
     values |= {name: json.loads(attributes[name]) for name in _DICTIONARIES}
-    values |= {name: attributes[name] for name in (*_TEXTS, *_INTEGERS)}
+    values |= {name: attributes[name] for name in (*TEXTS, *_INTEGERS)}
     values |= {name: attributes.get(name) for name in _NUMBERS}
     recovered: dict[str, Any] = {field.name: values.get(field.name) for field in fields(Solution)}
     return Solution(**recovered)
@@ -90,14 +89,14 @@ def _image(solution: Solution) -> bytes:
     image = io.BytesIO()
     arrays = {name: array for name in SHAPES if (array := getattr(solution, name)) is not None}
     with h5netcdf.File(image, "w") as file:
-        for name, array in arrays.items():
-            file.dimensions |= dict(zip(SHAPES[name], array.shape, strict=True))
+        file.dimensions = {dimension: size for name, array in arrays.items()
+                           for dimension, size in zip(SHAPES[name], array.shape, strict=True)}
         for name, array in arrays.items():
             variable = file.create_variable(name, SHAPES[name], data=array)
             variable.attrs.update(_attributes(solution, name, SHAPES[name]))
         file.attrs["format"] = FORMAT
         file.attrs["checksum"] = seal.BLANK
-        for name in _TEXTS:
+        for name in TEXTS:
             file.attrs[name] = getattr(solution, name)
         for name in _INTEGERS:
             file.attrs[name] = int(getattr(solution, name))

@@ -27,6 +27,7 @@ SHAPES: Mapping[str, tuple[str, ...]] = {
     "dissipated": ("time",),
     "work": ("time",),
 }
+TEXTS = ("scene", "title", "motion", "method", "backend", "reason")
 EVALUATIONS = ("rate", "jacobian", "steps")
 SECONDS = ("derive", "compile", "plan", "solve")
 
@@ -91,6 +92,7 @@ class Solution:
         plain |= {name: _number(getattr(self, name)) for name in ("length", "requested", "estimated")}
         plain |= {
             "reached": bool(self.reached),
+            **{name: _writable(getattr(self, name)) for name in TEXTS},
             "evaluations": {key: int(value) for key, value in self.evaluations.items()},
             "seconds": {key: float(value) for key, value in self.seconds.items()},
             "provenance": {str(key): str(value) for key, value in self.provenance.items()},
@@ -150,6 +152,11 @@ def _frozen(values: Array | None) -> Array | None:
     copy = np.array(values, dtype=np.float64, order="C")
     copy.setflags(write=False)
     return copy
+
+
+def _writable(text: str) -> str:
+    """Text that every file can hold: a scene may spell NUL in its title, and a file name may be no Unicode."""
+    return str(text).replace("\0", "\ufffd").encode("utf-8", "replace").decode()
 
 
 def _number(value: float | None) -> float | None:

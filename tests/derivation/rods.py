@@ -145,7 +145,7 @@ def jets(expressions: Iterable[sp.Expr]) -> set[sp.Expr]:
     for e in expressions:
         derivatives = e.atoms(sp.Derivative)
         found |= derivatives
-        bare = e.xreplace(dict.fromkeys(derivatives, sp.Integer(0)))
+        bare = e.xreplace(dict.fromkeys(derivatives, sp.Dummy()))
         found |= {f for f in bare.atoms(sp.Function) if is_field(f)}
     return found
 

@@ -1,0 +1,56 @@
+# make demo: a rod in motion, from a fresh clone. make test: every check.
+# Any POSIX make, Python 3.11 or newer, Linux or macOS. Installing compiles nothing; a C compiler makes runs faster.
+.POSIX:
+.SUFFIXES:
+.PHONY: help demo test bench generated clean
+
+PYTHON = python3
+OUT = out
+TESTS =
+BIN = .venv/bin
+PIP = $(BIN)/python -m pip --disable-pip-version-check install -q
+
+help:
+	@echo "make demo       install into .venv, simulate examples/helix.toml, write numbers and a picture to $(OUT)/demo"
+	@echo "make test       lint, types and all tests; make test TESTS='-m \"not slow\"' hands words on to pytest"
+	@echo "make bench      time and accuracy, measured"
+	@echo "make generated  write the kernels in generated/ again"
+	@echo "make clean      remove .venv, $(OUT) and all caches"
+	@echo "another Python: make PYTHON=python3.12 ..."
+
+demo: .venv/installed
+	$(BIN)/geocosserat run examples/helix.toml --out $(OUT)/demo
+
+test: .venv/tools
+	$(BIN)/python -m ruff check .
+	$(BIN)/python -m mypy
+	$(BIN)/python -m pytest $(TESTS)
+
+bench: .venv/tools
+	$(BIN)/python -m benchmarks
+
+generated: .venv/locked
+	$(BIN)/python -m geocosserat.codegen.catalogue
+
+clean:
+	rm -rf .venv $(OUT) build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +
+
+# The files in .venv below are stamps: each says that its step is done. A changed lock makes .venv anew.
+.venv/locked: requirements.lock
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { \
+	echo 'expected Python 3.11 or newer; name one: make PYTHON=python3.12 ...' >&2; exit 1; }
+	@$(PYTHON) -c 'import ensurepip, venv' || { \
+	echo 'expected a Python with venv and ensurepip; on Debian or Ubuntu: apt-get install python3-venv' >&2; exit 1; }
+	rm -rf .venv
+	$(PYTHON) -m venv .venv
+	$(PIP) --only-binary :all: -r requirements.lock
+	touch $@
+
+.venv/installed: .venv/locked pyproject.toml
+	$(PIP) --no-deps --no-build-isolation -e .
+	touch $@
+
+.venv/tools: .venv/installed requirements-dev.lock
+	$(PIP) --only-binary :all: -r requirements-dev.lock
+	touch $@

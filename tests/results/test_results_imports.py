@@ -1,0 +1,28 @@
+"""Results are light to import: a warm run must not pay for what it does not use."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+HEAVY = {"sympy", "scipy", "h5py", "h5netcdf", "matplotlib", "rich", "xarray", "pandas", "pydantic", "jinja2"}
+ALLOWED = {
+    "solution": set(), "ledger": set(), "atomic": set(), "seal": set(), "curves": set(),
+    "netcdf": {"h5py", "h5netcdf"}, "summary": {"rich"}, "progress": {"rich"}, "picture": {"matplotlib"},
+}
+
+
+def _imported(module: str) -> set[str]:
+    code = f"import sys, geocosserat.results.{module}; print(*sys.modules)"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    return set(run.stdout.split())
+
+
+@pytest.mark.parametrize("module", ALLOWED)
+def test_a_module_of_results_imports_only_what_it_needs(module: str) -> None:
+    """numpy always; the file library, matplotlib or rich only where they are used; never xarray or sympy."""
+    found = _imported(module)
+    assert found & HEAVY <= ALLOWED[module]
+    assert "matplotlib.pyplot" not in found
