@@ -6,6 +6,7 @@ Symbolic algebra, code generation and plotting are imported only when they are n
 already built starts in a fraction of a second.
 """
 
+import json
 import os
 import platform
 import sys
@@ -22,7 +23,7 @@ import numpy as np
 from geocosserat.accuracy import DEFAULT_ACCURACY, Setting, ladder, position_gap
 from geocosserat.codegen.identity import identity
 from geocosserat.discretisation.semidiscrete import SemiDiscrete, discretise
-from geocosserat.discretisation.structure import RodStructure
+from geocosserat.discretisation.structure import RodStructure, structure_of
 from geocosserat.kernel.compile import CompileError, compiler
 from geocosserat.kernel.contract import Array
 from geocosserat.kernel.library import KernelText, find, store
@@ -32,6 +33,7 @@ from geocosserat.kernel.pure import NumpyRod
 from geocosserat.model.errors import InputError
 from geocosserat.model.records import Scene
 from geocosserat.model.scene import load_scene
+from geocosserat.results.atomic import write_bytes
 from geocosserat.results.netcdf import save
 from geocosserat.results.progress import progress
 from geocosserat.results.solution import Solution
@@ -243,7 +245,7 @@ def _provenance(rod: SemiDiscrete, attempt: _Attempt) -> dict[str, str]:
     }
 
 
-def _claim(folder: Path, overwrite: bool) -> None:
+def _claim(folder: Path, overwrite: bool, names: Sequence[str] = (SOLUTION, PICTURE, SUMMARY)) -> None:
     """Makes sure, before anything is computed, that results can be written and that none are lost."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -252,10 +254,10 @@ def _claim(folder: Path, overwrite: bool) -> None:
         raise InputError("a folder to write to", str(error), "choose another --out", key="--out") from error
     if not writable:
         raise InputError("a folder that can be written", f"{folder}, read-only", "choose another --out", key="--out")
-    kept = [name for name in (SOLUTION, PICTURE, SUMMARY) if (folder / name).exists()]
+    kept = [name for name in names if (folder / name).exists()]
     if kept and not overwrite:
         raise InputError(
-            f"no results yet in {folder}", ", ".join(kept), "choose another --out, or say --overwrite", key="--out"
+            f"none of these files in {folder} yet", ", ".join(kept), "choose another --out, or say --overwrite", key="--out"
         )
 
 
@@ -298,6 +300,85 @@ def run(
         files = [folder / SOLUTION, folder / PICTURE, folder / SUMMARY]
         _write(solution, files, summary(solution, files, scene=read.path))
     return Run(solution, summary(solution, files, scene=read.path))
+
+
+@dataclass(frozen=True)
+class Equations:
+    """What `derive` returns: the equations a scene will solve, readable and as LaTeX, and what they consist of."""
+
+    form: str
+    text: str
+    latex: str
+    fields: Mapping[str, Any]
+
+    def __str__(self) -> str:
+        return self.text
+
+
+def derive(scene: SceneLike, form: str = "intrinsic", *, settings: Sequence[str] = (), unicode: bool = True) -> Equations:
+    """The equations of motion of a scene, derived symbolically and specialised to it.
+
+    Raises InputError for a wrong scene or an unknown form.
+    """
+    from geocosserat.derivation.equations import derive as derive_equations
+    from geocosserat.derivation.forms import FORMS, document
+    from geocosserat.derivation.printing import to_latex, to_text
+
+    read = load_any(scene, settings)
+    if form not in FORMS:
+        raise InputError(f"one of {', '.join(FORMS)}", repr(form), "choose one of these", key="--form")
+    equations = derive_equations(read.model)
+    laid_out = document(equations, form)
+    structure = structure_of(read.model)
+    fields = {
+        "scene": read.path or read.title,
+        "motion": structure.motion,
+        "form": form,
+        "fields": list(equations.fields),
+        "parameters": dict(read.model.parameters),
+        "coefficients": [c.name for c in structure.coefficients],
+        "sees_the_world": structure.world,
+    }
+    return Equations(form, to_text(laid_out, unicode), to_latex(laid_out), fields)
+
+
+@dataclass(frozen=True)
+class Generated:
+    """What `generate` returns: the files written, and the kernel's signature."""
+
+    backend: str
+    files: tuple[Path, ...]
+    signature: Mapping[str, Any]
+
+
+def generate(
+    scene: SceneLike,
+    backend: str,
+    out: str | os.PathLike[str],
+    *,
+    settings: Sequence[str] = (),
+    overwrite: bool = False,
+) -> Generated:
+    """Writes the kernel of a scene, its signature, the scene's numbers and a small driver to the folder `out`.
+
+    backend: "c" (then `make && ./driver` there) or "numpy" (then `python driver.py`); neither needs geocosserat.
+
+    Raises InputError for a wrong scene, backend or folder, or files there that would be overwritten.
+    """
+    from geocosserat.codegen.driver import take_away
+    from geocosserat.codegen.source import generate as generate_source
+
+    read = load_any(scene, settings)
+    if backend not in ("c", "numpy"):
+        raise InputError('"c" or "numpy"', repr(backend), "choose one of these", key="--backend")
+    chosen = _chosen(read) or Setting(1, 8, 0.0)
+    rod = discretise(read, chosen.elements, chosen.degree)
+    files = take_away(generate_source(rod.structure, read.title), rod, read.run.until, read.title, backend)
+    folder = Path(out)
+    _claim(folder, overwrite, tuple(files))
+    for name, content in files.items():
+        write_bytes(folder / name, content.encode())
+    return Generated(backend, tuple(folder / name for name in files), json.loads(files["signature.json"]))
 
 
 def _write(solution: Solution, files: Sequence[Path], fields: Mapping[str, Any]) -> None:

@@ -288,7 +288,7 @@ def _ranks(e: sp.Expr, order: tuple[str, ...]) -> list[tuple[int, str]]:
 
 
 def _term_rank(e: sp.Expr) -> tuple[int, list[tuple[int, str]]]:
-    """Derivatives, then products of fields, then single fields, then coordinates and parameters, then numbers."""
+    """Derivatives, products of fields, single fields, coordinates and parameters, numbers."""
     if e.has(sp.Derivative):
         return 0, _ranks(e, _ALONE)
     names = _ranks(e, _IN_PRODUCTS)

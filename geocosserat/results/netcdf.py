@@ -14,7 +14,7 @@ from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import h5netcdf  # type: ignore[import-untyped]
+import h5netcdf
 
 from geocosserat.results import seal
 from geocosserat.results.atomic import write_bytes

@@ -6,7 +6,7 @@ import time
 
 import pytest
 import sympy as sp
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from geocosserat.derivation.distribute import distributed, terms, vanishes
@@ -31,6 +31,7 @@ def expressions() -> st.SearchStrategy[sp.Expr]:
     )
 
 
+@settings(max_examples=50)
 @given(e=expressions())
 def test_the_value_does_not_change(e: sp.Expr) -> None:
     """At random values of fields, their derivatives and the coordinates."""
@@ -38,6 +39,7 @@ def test_the_value_does_not_change(e: sp.Expr) -> None:
     assert abs(random_value(distributed(e), 61) - before) <= TINY * (1 + abs(before))
 
 
+@settings(max_examples=50)
 @given(e=expressions())
 def test_nothing_minus_itself_leaves_a_term(e: sp.Expr) -> None:
     """The terms of e, multiplied out, taken from e cancel without a trace."""

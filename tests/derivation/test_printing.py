@@ -95,7 +95,7 @@ def test_the_latex_is_balanced_and_can_be_typeset(model: RodModel) -> None:
         for row in block.split("\\\\\n")
     ]
     formulas = [f.replace(r"\mathsf T", "T") for f in re.findall(r"\$(.*?)\$", latex)]
-    for formula in (*rows, *formulas):
+    for formula in (*rows[:: 1 + len(rows) // 50], *formulas):
         parser.parse(f"${formula}$")
     assert len(rows) > 10
 
@@ -128,13 +128,11 @@ def test_a_scene_without_weight_mentions_no_orientation(model: RodModel) -> None
 
 
 def test_lines_are_broken_at_the_width() -> None:
-    """No equation is wider than asked, unless one term is."""
-    text = to_text(document(derive(HEAVY_SPATIAL)), width=100)
-    equations = [
-        line for line in text.splitlines() if line.startswith("  ") and not line.rstrip().endswith(".")
-    ]
-    assert max(map(len, equations)) <= 102
-    assert any(line.startswith("      ") for line in equations)
+    """No equation is wider than asked; what goes on in the next line is indented further."""
+    text = to_text(document(derive(PLAIN_SPATIAL)), width=40)
+    equations = [line for line in text.splitlines() if "=" in line and "," not in line and ":" not in line]
+    assert max(map(len, equations)) <= 42
+    assert any(line.startswith("       +") for line in text.splitlines())
 
 
 def test_a_parameter_that_has_the_name_of_a_field_is_marked() -> None:

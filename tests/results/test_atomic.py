@@ -46,7 +46,7 @@ def test_a_failed_write_leaves_the_old_file_and_nothing_else(
         raise failure
 
     monkeypatch.setattr(atomic.os, step, fail)
-    with pytest.raises(seen, match="No space left on device|stop"):
+    with pytest.raises(seen, match=r"No space left on device|stop"):
         WRITERS[name](path)
     monkeypatch.undo()
     assert path.read_bytes() == b"older"

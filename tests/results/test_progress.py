@@ -129,10 +129,15 @@ def test_the_bar_is_drawn_ten_times_a_second_at_most(terminal: Terminal) -> None
 def test_a_failed_run_takes_its_bar_away(terminal: Terminal) -> None:
     """So that the message of the error stands on a clean line, and the cursor is visible again."""
     clock = Clock()
-    with pytest.raises(RuntimeError, match="stop"), progress("r", stream=terminal.stream, clock=clock) as report:
-        clock.now += 5.0
-        report(0.5, 7)
-        raise RuntimeError("stop")
+
+    def fail() -> None:
+        with progress("r", stream=terminal.stream, clock=clock) as report:
+            clock.now += 5.0
+            report(0.5, 7)
+            raise RuntimeError("stop")
+
+    with pytest.raises(RuntimeError, match="stop"):
+        fail()
     text = terminal.close()
     assert "7 steps" in text
     assert text.rindex("\x1b[?25h") > text.rindex("\x1b[?25l")

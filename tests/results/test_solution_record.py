@@ -95,7 +95,7 @@ def test_the_angle_belongs_to_the_plane() -> None:
     with pytest.raises(ValueError, match=r"solution\.angle: expected .* found an array for a spatial motion"):
         unwinding(angle=np.zeros((41, 25)))
     with pytest.raises(ValueError, match=r'motion: expected "planar" or "spatial", found \'diagonal\''):
-        rolling(motion="diagonal")
+        replace(rolling(), motion="diagonal")
 
 
 @pytest.mark.parametrize("name", ["time", "u", "u_point"])

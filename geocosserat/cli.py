@@ -1,0 +1,117 @@
+"""The command line: `geocosserat COMMAND SCENE`.
+
+Exit codes: 0 done; 1 the answer is no; 2 the input is wrong (one message); 3 undecided or not reached.
+"""
+
+import json
+import os
+import sys
+from collections.abc import Callable, Mapping
+from functools import wraps
+from typing import Any
+
+import click
+from rich.console import Console
+
+from geocosserat.conductor import derive as derive_equations
+from geocosserat.conductor import generate as generate_kernels
+from geocosserat.conductor import run as run_scene
+from geocosserat.model.errors import InputError
+from geocosserat.results.errors import FileError
+from geocosserat.results.summary import print_summary
+from geocosserat.version import VERSION
+
+DONE, NO, WRONG_INPUT, NOT_REACHED = 0, 1, 2, 3
+
+SETTINGS = click.option(
+    "--set", "settings", metavar="KEY=VALUE", multiple=True, help="Change a parameter or any key of the scene, e.g. rod.length=2."
+)
+JSON = click.option("--json", "as_json", is_flag=True, help="Print one JSON object and nothing else.")
+OVERWRITE = click.option("--overwrite", is_flag=True, help="Replace files of an earlier call in the folder.")
+
+
+def _one_message(command: Callable[..., None]) -> Callable[..., None]:
+    """Wrong input ends with code 2 and one line on standard error."""
+
+    @wraps(command)
+    def guarded(*args: Any, **options: Any) -> None:
+        try:
+            command(*args, **options)
+        except (InputError, FileError) as error:
+            click.echo(f"geocosserat: {error}", err=True)
+            sys.exit(WRONG_INPUT)
+        except BrokenPipeError:  # the reader of our output left
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+    return guarded
+
+
+def _print_json(fields: Mapping[str, Any]) -> None:
+    click.echo(json.dumps(fields, allow_nan=False))
+
+
+@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(VERSION, prog_name="geocosserat")
+def main() -> None:
+    """Slender bodies in slow viscous flow: derive, simulate, generate kernels."""
+
+
+@main.command()
+@click.argument("scene", type=click.Path())
+@click.option("--out", type=click.Path(), help="Folder for solution.nc, picture.png and summary.json.")
+@click.option("--accuracy", type=float, help="Position error at the end, relative to the length of the rod.")
+@SETTINGS
+@OVERWRITE
+@JSON
+@_one_message
+def run(
+    scene: str, out: str | None, accuracy: float | None, settings: tuple[str, ...], overwrite: bool, as_json: bool
+) -> None:
+    """Simulate SCENE (a TOML file)."""
+    result = run_scene(scene, out, settings=settings, accuracy=accuracy, overwrite=overwrite)
+    if as_json:
+        _print_json(result.fields)
+    else:
+        print_summary(result.solution, Console(), files=result.files)
+    if not result.reached:
+        click.echo(f"geocosserat: not reached: {result.reason}", err=True)
+        sys.exit(NOT_REACHED)
+
+
+@main.command()
+@click.argument("scene", type=click.Path())
+@click.option("--form", default="intrinsic", show_default=True, help="Which form of the equations.")
+@click.option("--latex", is_flag=True, help="Print LaTeX (for amsmath).")
+@SETTINGS
+@JSON
+@_one_message
+def derive(scene: str, form: str, latex: bool, settings: tuple[str, ...], as_json: bool) -> None:
+    """Print the equations that SCENE will solve."""
+    encoding = sys.stdout.encoding or "ascii"
+    equations = derive_equations(scene, form, settings=settings, unicode=as_json or "utf" in encoding.lower())
+    if as_json:
+        _print_json({**equations.fields, "text": equations.text, "latex": equations.latex})
+    else:
+        click.echo(equations.latex if latex else equations.text, nl=False)
+
+
+@main.command()
+@click.argument("scene", type=click.Path())
+@click.option("--backend", required=True, metavar="c|numpy", help="Language of the kernels.")
+@click.option("--out", required=True, type=click.Path(), help="Folder for the files.")
+@SETTINGS
+@OVERWRITE
+@JSON
+@_one_message
+def generate(
+    scene: str, backend: str, out: str, settings: tuple[str, ...], overwrite: bool, as_json: bool
+) -> None:
+    """Write the kernels of SCENE, their signature and a driver that uses them."""
+    done = generate_kernels(scene, backend, out, settings=settings, overwrite=overwrite)
+    if as_json:
+        _print_json({"backend": backend, "files": [str(f) for f in done.files], "signature": dict(done.signature)})
+        return
+    for path in done.files:
+        click.echo(path)
+    how = f"make -C {out} && {out}/driver" if backend == "c" else f"python {out}/driver.py"
+    click.echo(f"try it: {how}")
