@@ -71,8 +71,8 @@ def _broken(equation: Equation, left: str, column: int, script: Script, width: i
         hang = " " * (column + 5)
     else:
         right = script.terms(equation.right)
-        first, *rest = [*script.terms(equation.left), f"= {right[0]}", *right[1:]]
-        line, hang = f"  {first}", " " * 6
+        terms = [*script.terms(equation.left), f"= {right[0]}", *right[1:]]
+        line, rest, hang = f"  {terms[0]}", terms[1:], " " * 6
     for term in rest:
         if _width(line) + 1 + _width(term) > width:
             yield line

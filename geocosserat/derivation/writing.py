@@ -178,7 +178,7 @@ class Text(Script):
         parts = _parts(name)
         if not self.unicode or parts is None:
             return name
-        return greek_unicode.get(parts.base, parts.base) + parts.index.translate(_LOW)
+        return str(greek_unicode.get(parts.base, parts.base)) + parts.index.translate(_LOW)
 
     def field(self, name: str, primes: int, dots: int) -> str:
         if not self.unicode:

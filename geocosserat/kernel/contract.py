@@ -1,11 +1,35 @@
 """What a solver may ask of a kernel. Solvers see this and nothing else: no rods."""
 
-from typing import Protocol
+from dataclasses import dataclass
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Callbacks:
+    """Addresses of C functions with the signatures of CVODE's callbacks, for integrations that never leave C.
+
+    data: what they take as their user data; keep: whatever must stay alive while they are used.
+    """
+
+    data: int
+    rate: int
+    jacobian: int
+    setup: int
+    solve: int
+    keep: Any
+
+
+@runtime_checkable
+class NativeKernel(Protocol):
+    """A kernel that can also be called from C."""
+
+    def callbacks(self, vector: int, matrix: int, dense: bool) -> Callbacks:
+        """Its callbacks; vector and matrix are the addresses of N_VGetArrayPointer and SUNDenseMatrix_Data."""
 
 
 class Kernel(Protocol):

@@ -11,7 +11,7 @@ import cffi
 import numpy as np
 
 from geocosserat.discretisation.semidiscrete import SemiDiscrete
-from geocosserat.kernel.contract import Array
+from geocosserat.kernel.contract import Array, Callbacks
 
 DECLARATIONS = """
 typedef struct rod {
@@ -30,6 +30,18 @@ int rod_dense(const rod *r, double t, const double *y, double *J, double *lower,
 int rod_factor(int elements, double gamma, const double *lower, const double *diagonal, const double *upper,
                double *factors, int *pivots);
 int rod_solve(int elements, const double *factors, const int *pivots, const double *b, double *x, double *scratch);
+typedef struct rod_problem {
+    const rod *r;
+    size_t size;
+    double *lower, *diagonal, *upper, *factors, *scratch, *solving, *dense;
+    int *pivots;
+    void *vector, *matrix;
+} rod_problem;
+int problem_rate(double t, void *y, void *rate, void *problem);
+int problem_jacobian(double t, void *y, void *rate, void *J, void *problem, void *a, void *b, void *c);
+int problem_setup(double t, void *y, void *rate, int usable, int *renewed, double gamma, void *problem);
+int problem_solve(double t, void *y, void *rate, void *b, void *x, double gamma, double tolerance, int side,
+                  void *problem);
 """
 
 
@@ -90,6 +102,34 @@ class NativeRod:
             lower, diagonal, upper = (np.empty((self._elements, b, b)) for _ in range(3))
             self._blocks = lower, diagonal, upper, np.empty(self._lib.rod_scratch())
         return self._blocks
+
+    def callbacks(self, vector: int, matrix: int, dense: bool) -> Callbacks:
+        """This kernel as CVODE sees it; vector and matrix are the addresses of N_VGetArrayPointer and
+        SUNDenseMatrix_Data, dense says whether Jacobians will be asked for as dense matrices."""
+        ffi, b = self._ffi, self._lib.rod_block()
+        lower, diagonal, upper, scratch = self._space()
+        problem = ffi.new("rod_problem *")
+        arrays = {
+            "lower": lower,
+            "diagonal": diagonal,
+            "upper": upper,
+            "scratch": scratch,
+            "factors": np.empty(0 if dense else 3 * diagonal.size),
+            "solving": np.empty(self._elements * b),
+            "dense": np.empty(self.size * (self.size + 6) if dense else 0),
+        }
+        pivots = np.empty(self._elements * b, dtype=np.intc)
+        for name, array in arrays.items():
+            setattr(problem, name, ffi.cast("double *", array.ctypes.data))
+        problem.pivots = ffi.cast("int *", pivots.ctypes.data)
+        problem.r, problem.size = self._rod, self.size
+        problem.vector, problem.matrix = ffi.cast("void *", vector), ffi.cast("void *", matrix)
+
+        def address(thing: Any) -> int:
+            return int(ffi.cast("uintptr_t", thing))
+
+        functions = (getattr(self._lib, f"problem_{name}") for name in ("rate", "jacobian", "setup", "solve"))
+        return Callbacks(address(problem), *(address(f) for f in functions), keep=(problem, arrays, pivots, self))
 
     def blocks(self, t: float, y: Array) -> tuple[Array, Array, Array]:
         """Copies of the block-tridiagonal Jacobian, (elements, block, block) each."""

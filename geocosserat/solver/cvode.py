@@ -1,4 +1,4 @@
-"""Variable-order BDF from SUNDIALS, through scikit-sundae.
+"""Variable-order BDF from SUNDIALS, through scikit-sundae: kernels in Python.
 
 Small systems use dense Newton matrices. Large ones use GMRES whose preconditioner is the kernel's own block
 elimination of the exact Jacobian: one or two Krylov vectors a Newton step, and memory linear in the length of the
@@ -14,14 +14,8 @@ from sksundae.cvode import CVODE, CVODEPrecond
 
 from geocosserat.kernel.contract import Array, Kernel
 from geocosserat.solver.counted import Counted
+from geocosserat.solver.settings import DENSE_LIMIT, KRYLOV, STEP_LIMIT
 from geocosserat.solver.trajectory import Progress, Trajectory
-
-DENSE_LIMIT = 120
-"""Largest state that is solved with dense matrices (benchmarks/linear_solvers.py)."""
-
-STEP_LIMIT = 200_000
-"""Steps between two instants of output after which a run gives up."""
-
 
 def cvode(kernel: Kernel, start: Array, times: Array, rtol: float, atol: Array, progress: Progress) -> Trajectory:
     """Integrates from times[0] through all of `times`; see `integrate`.
@@ -33,7 +27,7 @@ def cvode(kernel: Kernel, start: Array, times: Array, rtol: float, atol: Array, 
     if kernel.size <= DENSE_LIMIT:
         options |= {"linsolver": "dense", "jacfn": _dense(counted)}
     else:
-        options |= {"linsolver": "gmres", "precond": _precondition(counted), "krylov_dim": 10}
+        options |= {"linsolver": "gmres", "precond": _precondition(counted), "krylov_dim": KRYLOV}
     solver = CVODE(counted.rate, **options)
     states = np.empty((len(times), kernel.size))
     states[0] = start

@@ -1,14 +1,16 @@
 """One door to all integrators, chosen by name. Nothing here knows what a rod is."""
 
+from importlib import import_module
+from typing import Any
+
 import numpy as np
 
-from geocosserat.kernel.contract import Array, Kernel
-from geocosserat.solver.cvode import cvode
-from geocosserat.solver.scipy_methods import METHODS as SCIPY
-from geocosserat.solver.scipy_methods import scipy_method
+from geocosserat.kernel.contract import Array, Kernel, NativeKernel
+from geocosserat.solver.cvode_native import cvode_native
+from geocosserat.solver.sundials import sundials
 from geocosserat.solver.trajectory import Progress, Trajectory
 
-METHODS = ("cvode", *SCIPY)
+METHODS = ("cvode", "radau", "bdf", "lsoda")
 
 
 def _silent(fraction: float, steps: int) -> None:
@@ -36,6 +38,14 @@ def integrate(
     if not np.all(np.isfinite(start)):
         raise ValueError("expected a finite initial state, found infinities or NaN; check the start of the scene")
     tolerance = np.broadcast_to(np.asarray(atol, dtype=float), start.shape).copy()
-    if method == "cvode":
-        return cvode(kernel, start, times, rtol, tolerance, progress)
-    return scipy_method(method, kernel, start, times, rtol, tolerance, progress)
+    if method != "cvode":
+        return _module("scipy_methods").scipy_method(method, kernel, start, times, rtol, tolerance, progress)
+    library = sundials() if isinstance(kernel, NativeKernel) else None
+    if library is not None:
+        return cvode_native(library, kernel, start, times, rtol, tolerance, progress)
+    return _module("cvode").cvode(kernel, start, times, rtol, tolerance, progress)
+
+
+def _module(name: str) -> Any:
+    """An integrator's module, imported when it is first asked for: scipy and scikit-sundae start slowly."""
+    return import_module(f"geocosserat.solver.{name}")

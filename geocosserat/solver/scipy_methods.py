@@ -11,12 +11,10 @@ from scipy.integrate import BDF, LSODA, OdeSolver, Radau
 
 from geocosserat.kernel.contract import Array, Kernel
 from geocosserat.solver.counted import Counted
+from geocosserat.solver.settings import STEP_LIMIT
 from geocosserat.solver.trajectory import Progress, Trajectory
 
 METHODS: dict[str, type[OdeSolver]] = {"radau": Radau, "bdf": BDF, "lsoda": LSODA}
-
-STEP_LIMIT = 1_000_000
-"""Steps after which a run gives up."""
 
 
 def scipy_method(

@@ -10,8 +10,6 @@ from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
-import pytest
-
 ROOT = Path(__file__).parents[2]
 
 STAGES = {
@@ -209,7 +207,6 @@ def test_no_text_is_ever_run() -> None:
     assert not wrong, _listed(wrong)
 
 
-@pytest.mark.skipif("conductor" not in _trees() or "cli" not in _trees(), reason="no conductor yet")
 def test_a_warm_run_imports_nothing_slow() -> None:
     """The program starts without its symbolic stages and without its plotting and table libraries."""
     code = "import sys, geocosserat.cli, geocosserat.conductor; print(*sys.modules)"

@@ -75,14 +75,14 @@ def test_numbers_of_numpy_become_plain_ones() -> None:
     assert solution.reached is True
 
 
-@pytest.mark.parametrize("make", [rolling, unwinding])
-@pytest.mark.parametrize("name", sorted(SHAPES))
+@pytest.mark.parametrize(
+    ("make", "name"), [(make, name) for make in (rolling, unwinding) for name in sorted(SHAPES)
+                       if (make, name) != (unwinding, "angle")]
+)
 def test_an_array_of_the_wrong_shape_is_refused(make, name: str) -> None:
     """One number too few along any dimension of any array is noticed, and the array is named."""
     solution = make()
     array = getattr(solution, name)
-    if array is None:
-        pytest.skip("no such array in space")
     for axis in range(array.ndim):
         with pytest.raises(ValueError, match=r"solution\.\w+: expected .*found"):
             replace(solution, **{name: np.delete(array, 0, axis=axis)})
