@@ -40,7 +40,7 @@ clean:
 .venv/locked: requirements.lock
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { \
 	echo 'expected Python 3.11 or newer; name one: make PYTHON=python3.12 ...' >&2; exit 1; }
-	@$(PYTHON) -c 'import ensurepip, venv' || { \
+	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || { \
 	echo 'expected a Python with venv and ensurepip; on Debian or Ubuntu: apt-get install python3-venv' >&2; exit 1; }
 	rm -rf .venv
 	$(PYTHON) -m venv .venv

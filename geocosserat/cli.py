@@ -24,7 +24,7 @@ from geocosserat.version import VERSION
 DONE, NO, WRONG_INPUT, NOT_REACHED = 0, 1, 2, 3
 
 SETTINGS = click.option(
-    "--set", "settings", metavar="KEY=VALUE", multiple=True, help="Change a parameter or any key of the scene, e.g. rod.length=2."
+    "--set", "settings", metavar="KEY=VALUE", multiple=True, help="Change any key, e.g. rod.length=2."
 )
 JSON = click.option("--json", "as_json", is_flag=True, help="Print one JSON object and nothing else.")
 OVERWRITE = click.option("--overwrite", is_flag=True, help="Replace files of an earlier call in the folder.")
@@ -62,13 +62,25 @@ def main() -> None:
 @click.option("--accuracy", type=float, help="Position error at the end, relative to the length of the rod.")
 @SETTINGS
 @OVERWRITE
+@click.option("--resume", is_flag=True, help="Go on from the checkpoint that an interrupted run left in --out.")
 @JSON
 @_one_message
 def run(
-    scene: str, out: str | None, accuracy: float | None, settings: tuple[str, ...], overwrite: bool, as_json: bool
+    scene: str,
+    out: str | None,
+    accuracy: float | None,
+    settings: tuple[str, ...],
+    overwrite: bool,
+    resume: bool,
+    as_json: bool,
 ) -> None:
     """Simulate SCENE (a TOML file)."""
-    result = run_scene(scene, out, settings=settings, accuracy=accuracy, overwrite=overwrite)
+    try:
+        result = run_scene(scene, out, settings=settings, accuracy=accuracy, overwrite=overwrite, resume=resume)
+    except KeyboardInterrupt:
+        kept = f"; go on with --out {out} --resume" if out else "; with --out it could be resumed"
+        click.echo(f"geocosserat: interrupted{kept}", err=True)
+        sys.exit(NOT_REACHED)
     if as_json:
         _print_json(result.fields)
     else:
@@ -103,9 +115,7 @@ def derive(scene: str, form: str, latex: bool, settings: tuple[str, ...], as_jso
 @OVERWRITE
 @JSON
 @_one_message
-def generate(
-    scene: str, backend: str, out: str, settings: tuple[str, ...], overwrite: bool, as_json: bool
-) -> None:
+def generate(scene: str, backend: str, out: str, settings: tuple[str, ...], overwrite: bool, as_json: bool) -> None:
     """Write the kernels of SCENE, their signature and a driver that uses them."""
     done = generate_kernels(scene, backend, out, settings=settings, overwrite=overwrite)
     if as_json:

@@ -6,6 +6,7 @@ Symbolic algebra, code generation and plotting are imported only when they are n
 already built starts in a fraction of a second.
 """
 
+import hashlib
 import json
 import os
 import platform
@@ -13,7 +14,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -22,6 +23,7 @@ import numpy as np
 
 from geocosserat.accuracy import DEFAULT_ACCURACY, Setting, ladder, position_gap
 from geocosserat.codegen.identity import identity
+from geocosserat.discretisation.mesh import Mesh
 from geocosserat.discretisation.semidiscrete import SemiDiscrete, discretise
 from geocosserat.discretisation.structure import RodStructure, structure_of
 from geocosserat.kernel.compile import CompileError, compiler
@@ -34,6 +36,8 @@ from geocosserat.model.errors import InputError
 from geocosserat.model.records import Scene
 from geocosserat.model.scene import load_scene
 from geocosserat.results.atomic import write_bytes
+from geocosserat.results.checkpoint import NAME as CHECKPOINT
+from geocosserat.results.checkpoint import Checkpoint, load_checkpoint, save_checkpoint
 from geocosserat.results.netcdf import save
 from geocosserat.results.progress import progress
 from geocosserat.results.solution import Solution
@@ -73,6 +77,11 @@ class _Clock:
             yield
         finally:
             self.seconds[kind] += time.perf_counter() - start
+
+    def plan_ends(self) -> None:
+        """Books what counted as solving so far as planning."""
+        self.seconds["plan"] += self.seconds["solve"]
+        self.seconds["solve"] = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,20 +156,6 @@ def _unit_of_energy(scene: Scene, rod: SemiDiscrete, kernel: NativeRod | NumpyRo
     return max(kernel.observe(0.0, rod.state)[2], soft / model.length)
 
 
-def _attempt(scene: Scene, setting: Setting, backend: str, clock: _Clock, kind: str, label: str) -> _Attempt:
-    """Simulates at one setting; `kind` is where its time is booked."""
-    with clock("derive"):
-        rod = discretise(scene, setting.elements, setting.degree)
-        text = kernel_text(rod.structure)
-    with clock("compile"):
-        kernel = load(text, rod, backend)
-    times = np.linspace(0.0, scene.run.until, scene.run.frames)
-    atol = tolerances(rod, setting.rtol, scene.run.atol, _unit_of_energy(scene, rod, kernel))
-    with clock(kind), progress(label) as report:
-        trajectory = integrate(kernel, rod.state, times, scene.run.method or "cvode", setting.rtol, atol, report)
-    return _Attempt(setting, rod, kernel, trajectory, text.origin)
-
-
 def _chosen(scene: Scene) -> Setting | None:
     """The setting the scene fixes, if it fixes any part of one."""
     run = scene.run
@@ -170,28 +165,113 @@ def _chosen(scene: Scene) -> Setting | None:
     return Setting(run.elements or 1, run.degree or 8, rtol)
 
 
-def _solve(scene: Scene, backend: str, clock: _Clock) -> tuple[_Attempt, float | None]:
-    """The attempt to report and the estimate of its error, relative to the length."""
-    chosen = _chosen(scene)
-    if chosen is not None:
-        return _attempt(scene, chosen, backend, clock, "solve", scene.title), None
-    accuracy = scene.run.accuracy or DEFAULT_ACCURACY
-    last: tuple[_Attempt, Array] | None = None
-    estimate: float | None = None
-    for setting in ladder(accuracy):
-        before = dict(clock.seconds)
-        now = _attempt(scene, setting, backend, clock, "solve", scene.title)
-        positions = now.rod.poses(now.trajectory.states[-1]).position
-        if last is not None:
-            clock.seconds["plan"] += before["solve"] - clock.seconds["plan"]  # what came before was planning
-            clock.seconds["solve"] -= before["solve"]
-            if now.trajectory.reached and last[0].trajectory.reached:
-                gap = position_gap(last[0].rod.mesh, last[1], now.rod.mesh, positions)
-                estimate = gap / scene.model.length
+class _Simulation:
+    """Simulates a scene at its setting, or at finer and finer ones until two agree; keeps checkpoints on the way."""
+
+    def __init__(self, scene: Scene, backend: str, clock: _Clock, keeper: "_Keeper") -> None:
+        self.scene, self.backend, self.clock, self.keeper = scene, backend, clock, keeper
+
+    def solve(self) -> tuple[_Attempt, float | None]:
+        """The attempt to report, and the estimate of its error relative to the length (None at a fixed setting)."""
+        chosen = _chosen(self.scene)
+        if chosen is not None:
+            return self._attempt(0, chosen, np.empty((0, 0))), None
+        accuracy = self.scene.run.accuracy or DEFAULT_ACCURACY
+        resumed = self.keeper.resumed
+        before: tuple[Mesh, Array] | None = None
+        estimate: float | None = None
+        for rung, setting in enumerate(ladder(accuracy)):
+            if resumed is not None and rung < resumed.rung:
+                if rung == resumed.rung - 1:
+                    before = discretise(self.scene, setting.elements, setting.degree).mesh, resumed.before
+                continue
+            self.clock.plan_ends()  # what was solved before this one turns out to be planning
+            now = self._attempt(rung, setting, before[1] if before else np.empty((0, 0)))
+            positions = now.rod.poses(now.trajectory.states[-1]).position
+            if not now.trajectory.reached:
+                break
+            if before is not None:
+                estimate = position_gap(*before, now.rod.mesh, positions) / self.scene.model.length
                 if estimate <= accuracy:
                     break
-        last = now, positions
-    return now, estimate
+            before = now.rod.mesh, positions
+        return now, estimate
+
+    def _attempt(self, rung: int, setting: Setting, before: Array) -> _Attempt:
+        scene = self.scene
+        with self.clock("derive"):
+            rod = discretise(scene, setting.elements, setting.degree)
+            text = kernel_text(rod.structure)
+        with self.clock("compile"):
+            kernel = load(text, rod, self.backend)
+        times = np.linspace(0.0, scene.run.until, scene.run.frames)
+        atol = tolerances(rod, setting.rtol, scene.run.atol, _unit_of_energy(scene, rod, kernel))
+        done = self.keeper.begin(rung, rod.state, before)
+        with self.clock("solve"), progress(scene.title) as report:
+            if len(done) == len(times):  # stopped between this rung and the next
+                trajectory = Trajectory(times, done, 0, 0, 0, True)
+            else:
+                rest = integrate(
+                    kernel,
+                    done[-1],
+                    times[len(done) - 1 :],
+                    scene.run.method or "cvode",
+                    setting.rtol,
+                    atol,
+                    report,
+                    self.keeper.frame,
+                )
+                states = np.concatenate([done[:-1], rest.states])
+                trajectory = replace(rest, times=times[: len(states)], states=states)
+        return _Attempt(setting, rod, kernel, trajectory, text.origin)
+
+
+class _Keeper:
+    """Writes a checkpoint now and then, if there is a folder to write to."""
+
+    EVERY = 5.0  # seconds
+
+    def __init__(self, folder: Path | None, key: str, resume: bool) -> None:
+        self.folder, self.key = folder, key
+        self.resumed: Checkpoint | None = None
+        if resume:
+            assert folder is not None
+            self.resumed = load_checkpoint(folder)
+            if self.resumed.key != key:
+                raise InputError(
+                    "the scene and settings of the interrupted run",
+                    f"others than those of the checkpoint in {folder}",
+                    "resume with the same scene, or start without --resume",
+                    key="--resume",
+                )
+        self.rung, self.states, self.before = 0, [np.empty(0)], np.empty((0, 0))
+        self.saved = time.monotonic()
+
+    def begin(self, rung: int, start: Array, before: Array) -> Array:
+        """States (frames, size) of this rung that are there already; at least the start."""
+        resumed = self.resumed
+        done = resumed.states if resumed is not None and resumed.rung == rung else start[None]
+        if done.shape[1] != len(start):
+            raise InputError(f"states of {len(start)} numbers", f"{done.shape[1]}", "start without --resume")
+        self.rung, self.states, self.before = rung, list(done), before
+        return np.array(done)
+
+    def frame(self, _: int, state: Array) -> None:
+        """Notes a state that was reached."""
+        self.states.append(state.copy())
+        if time.monotonic() - self.saved > self.EVERY:
+            self.save()
+
+    def save(self) -> None:
+        """Writes the checkpoint now."""
+        if self.folder is not None:
+            save_checkpoint(Checkpoint(self.key, self.rung, np.array(self.states), self.before), self.folder)
+        self.saved = time.monotonic()
+
+    def finish(self) -> None:
+        """The run is complete: nothing to go on from."""
+        if self.folder is not None:
+            (self.folder / CHECKPOINT).unlink(missing_ok=True)
 
 
 def _solution(scene: Scene, attempt: _Attempt, estimate: float | None, clock: _Clock) -> Solution:
@@ -257,7 +337,10 @@ def _claim(folder: Path, overwrite: bool, names: Sequence[str] = (SOLUTION, PICT
     kept = [name for name in names if (folder / name).exists()]
     if kept and not overwrite:
         raise InputError(
-            f"none of these files in {folder} yet", ", ".join(kept), "choose another --out, or say --overwrite", key="--out"
+            f"none of these files in {folder} yet",
+            ", ".join(kept),
+            "choose another --out, or say --overwrite",
+            key="--out",
         )
 
 
@@ -272,34 +355,49 @@ def run(
     settings: Sequence[str] = (),
     accuracy: float | None = None,
     overwrite: bool = False,
+    resume: bool = False,
 ) -> Run:
     """Simulates a scene; writes solution.nc, picture.png and summary.json to `out` if given.
 
     scene: a path, TOML text, a mapping or a Scene. settings: "key=value" changes to it. accuracy: position error at
-    the end, relative to the length. A run that could not finish is returned too, with `reached` false and the reason.
+    the end, relative to the length. resume: go on from the checkpoint in `out`. A run that could not finish is
+    returned too, with `reached` false and the reason.
 
-    Raises InputError for a wrong scene, setting or folder; nothing is computed or written then.
+    Raises InputError for a wrong scene, setting or folder; nothing is computed or written then. Interrupted
+    (Ctrl-C), it leaves a checkpoint in `out` and raises KeyboardInterrupt.
     """
     changes = [*settings, *([] if accuracy is None else [f"run.accuracy={accuracy!r}"])]
     read = load_any(scene, changes)
     folder = None if out is None else Path(out)
+    if resume and folder is None:
+        raise InputError("the folder of the interrupted run", "none", "name it with --out", key="--resume")
     if folder is not None:
-        _claim(folder, overwrite)
+        _claim(folder, overwrite or resume)
     clock = _Clock()
     backend = choose_backend(read.run.backend, _tell)
+    keeper = _Keeper(folder, _key(read), resume)
     try:
-        attempt, estimate = _solve(read, backend, clock)
+        attempt, estimate = _Simulation(read, backend, clock, keeper).solve()
     except CompileError as error:
         if read.run.backend == "c":
             raise
         _tell(f"{error}\nrunning on numpy instead")
-        attempt, estimate = _solve(read, "numpy", clock)
+        attempt, estimate = _Simulation(read, "numpy", clock, keeper).solve()
+    except KeyboardInterrupt:
+        keeper.save()
+        raise
     solution = _solution(read, attempt, estimate, clock)
     files: list[Path] = []
     if folder is not None:
         files = [folder / SOLUTION, folder / PICTURE, folder / SUMMARY]
         _write(solution, files, summary(solution, files, scene=read.path))
+        keeper.finish()
     return Run(solution, summary(solution, files, scene=read.path))
+
+
+def _key(scene: Scene) -> str:
+    """What a checkpoint belongs to: the scene and the program."""
+    return hashlib.sha256(f"{VERSION}\0{scene.source}".encode()).hexdigest()
 
 
 @dataclass(frozen=True)
@@ -315,7 +413,9 @@ class Equations:
         return self.text
 
 
-def derive(scene: SceneLike, form: str = "intrinsic", *, settings: Sequence[str] = (), unicode: bool = True) -> Equations:
+def derive(
+    scene: SceneLike, form: str = "intrinsic", *, settings: Sequence[str] = (), unicode: bool = True
+) -> Equations:
     """The equations of motion of a scene, derived symbolically and specialised to it.
 
     Raises InputError for a wrong scene or an unknown form.

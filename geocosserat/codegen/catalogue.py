@@ -31,10 +31,16 @@ def catalogue() -> Iterator[tuple[str, str, Mapping[str, Any]]]:
         free = {"left": {"kind": "free"}}
         yield f"{motion}_free_free", f"{motion.capitalize()} rod, both ends free", _scene(motion, ends=free)
         pulled = {"right": {"kind": "free", "force": _TIP[motion], "frame": "world"}}
-        yield f"{motion}_dead_load", f"{motion.capitalize()} rod under a dead force at its tip", _scene(motion, ends=pulled)
+        yield (
+            f"{motion}_dead_load",
+            f"{motion.capitalize()} rod under a dead force at its tip",
+            _scene(motion, ends=pulled),
+        )
     helix = {"right": {"kind": "free", "force": _TIP["spatial"], "frame": "world"}}
-    yield "helix_dead_load", "Spatial rod, helical at rest, under a dead force at its tip", _scene(
-        "spatial", rod={"reference": _HELIX}, ends=helix
+    yield (
+        "helix_dead_load",
+        "Spatial rod, helical at rest, under a dead force at its tip",
+        _scene("spatial", rod={"reference": _HELIX}, ends=helix),
     )
 
 

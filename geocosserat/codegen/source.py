@@ -131,9 +131,7 @@ class _Writer:
             return read if sign == "+" else f"-{read}"
 
         present = [(i, name) for i, name in enumerate(self.structure.weight) if name != ZERO]
-        return [
-            " + ".join(f"{entry(i, j)} * {name}" for i, name in present) for j in range(len(self.structure.weight))
-        ]
+        return [" + ".join(f"{entry(i, j)} * {name}" for i, name in present) for j in range(len(self.structure.weight))]
 
     def context(self, tapes: dict[str, Tape], pose: tuple[sp.Symbol, ...]) -> dict[str, Any]:
         """Everything the templates of this language ask for."""
@@ -190,7 +188,7 @@ def generate(structure: RodStructure, title: str = "") -> KernelSource:
     group = structure.group
     name = identity(structure)
     operations = {key: tapes[key].operations for key in ("stress", "strain_rate", "velocity", "tangent")}
-    places = {place: [c.name for c in structure.at(place)] for place in ("uniform", "point", "node")}  # type: ignore[arg-type]
+    places = {place: [c.name for c in structure.at(place)] for place in ("uniform", "point", "node")}
     signature = {
         "identity": name,
         "version": VERSION,

@@ -32,9 +32,7 @@ class Tape:
         return frozenset(s.name for s in used - own)
 
 
-def record(
-    outputs: Mapping[str, sp.Expr], prefix: str = "x", given: Mapping[str, sp.Expr] | None = None
-) -> Tape:
+def record(outputs: Mapping[str, sp.Expr], prefix: str = "x", given: Mapping[str, sp.Expr] | None = None) -> Tape:
     """The tape of named expressions; `prefix` names its intermediate steps.
 
     given: named intermediate results that the outputs use by name; each becomes a step.

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -82,9 +83,6 @@ def make_mesh(length: float, elements: int, degree: int, steps: Iterable[float] 
     """
     inside = sorted({float(x) for x in steps if 0 < x < length})
     breaks = [0.0, *inside, length]
-    pieces = [
-        np.linspace(a, b, max(1, round(elements * (b - a) / length)) + 1)[:-1]
-        for a, b in zip(breaks[:-1], breaks[1:], strict=True)
-    ]
+    pieces = [np.linspace(a, b, max(1, round(elements * (b - a) / length)) + 1)[:-1] for a, b in pairwise(breaks)]
     edges = np.concatenate([*pieces, [length]])
     return Mesh(edges, reference_element(degree))

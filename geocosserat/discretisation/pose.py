@@ -22,7 +22,7 @@ class Poses:
     angle: Array | None = None
 
 
-def _cross(v: Array) -> Array:
+def cross_matrix(v: Array) -> Array:
     """The matrix of v x: (..., 3) -> (..., 3, 3)."""
     out = np.zeros((*v.shape, 3))
     for c in range(3):
@@ -31,7 +31,8 @@ def _cross(v: Array) -> Array:
     return out
 
 
-def _plane_rotation(angle: Array) -> Array:
+def plane_rotation(angle: Array) -> Array:
+    """Rotation matrices of the plane: (...) -> (..., 2, 2)."""
     c, s = np.cos(angle), np.sin(angle)
     return np.stack([np.stack([c, -s], -1), np.stack([s, c], -1)], -2)
 
@@ -44,12 +45,12 @@ def _relative(mesh: Mesh, turn: Array) -> tuple[Array, Array, Array | None]:
     if planar:
         bend = turn[..., 2] * half[:, None]
         angle = bend @ table.running.T
-        rotation = _plane_rotation(angle)
-        inside = _plane_rotation(bend @ table.inner.T)
+        rotation = plane_rotation(angle)
+        inside = plane_rotation(bend @ table.inner.T)
     else:
         angle = None
         p = mesh.degree
-        hat = _cross(turn[..., 3:] * half[:, None, None])
+        hat = cross_matrix(turn[..., 3:] * half[:, None, None])
         system = np.einsum("qm,...qij->...qimj", table.values, hat) + np.einsum("qm,ij->qimj", table.slopes, np.eye(3))
         batch = system.shape[:-4]
         A = system[..., 1:, :].reshape(*batch, 3 * p, 3 * p)
@@ -62,7 +63,9 @@ def _relative(mesh: Mesh, turn: Array) -> tuple[Array, Array, Array | None]:
     return rotation, np.einsum("mq,...qi->...mi", table.running, step), angle
 
 
-def march(mesh: Mesh, turn: Array, position: Array, rotation: Array, angle: Array | None = None, end: str = "left") -> Poses:
+def march(
+    mesh: Mesh, turn: Array, position: Array, rotation: Array, angle: Array | None = None, end: str = "left"
+) -> Poses:
     """Poses at the nodes, from the turn (..., d, points) and the pose of one end ("left" or "right").
 
     position (..., space), rotation (..., space, space), and in the plane also the angle (...), unwrapped.
@@ -86,14 +89,14 @@ def march(mesh: Mesh, turn: Array, position: Array, rotation: Array, angle: Arra
             r[..., e, :] = r[..., e + 1, :] - (R[..., e, :, :] @ offset[..., e, p, :, None])[..., 0]
     rotations = R[..., :-1, None, :, :] @ relative
     positions = r[..., :-1, None, :] + (R[..., :-1, None, :, :] @ offset[..., None])[..., 0]
-    nodes_R = np.concatenate([rotations[..., :p, :, :].reshape(*batch, n * p, space, space), R[..., -1:, :, :]], axis=-3)
+    frames = np.concatenate([rotations[..., :p, :, :].reshape(*batch, n * p, space, space), R[..., -1:, :, :]], axis=-3)
     nodes_r = np.concatenate([positions[..., :p, :].reshape(*batch, n * p, space), r[..., -1:, :]], axis=-2)
     if gained is None:
-        return Poses(nodes_r, nodes_R)
+        return Poses(nodes_r, frames)
     ends = np.concatenate([np.zeros((*batch, 1)), np.cumsum(gained[..., p], axis=-1)], axis=-1)
     shift = np.asarray(angle)[..., None] - (ends[..., -1:] if end == "right" else 0.0)
     ends = ends + shift
     inner = ends[..., :-1, None] + gained[..., :p]
     angles = np.concatenate([inner.reshape(*batch, n * p), ends[..., -1:]], axis=-1)
     # one angle for all: the frames agree with it to the last digit
-    return Poses(nodes_r, _plane_rotation(angles), angles)
+    return Poses(nodes_r, plane_rotation(angles), angles)

@@ -41,7 +41,7 @@ class ReferenceElement:
 
 
 def _vandermonde(x: Array, degree: int) -> Array:
-    return legendre.legvander(x, degree)
+    return np.asarray(legendre.legvander(x, degree), dtype=np.float64)
 
 
 def _lobatto(degree: int) -> tuple[Array, Array]:
@@ -52,8 +52,8 @@ def _lobatto(degree: int) -> tuple[Array, Array]:
     for _ in range(2):  # polish the eigenvalue solver's roots
         inside = inside - legendre.legval(inside, slope) / legendre.legval(inside, curvature)
     inside = (inside - inside[::-1]) / 2  # exactly symmetric
-    nodes = np.concatenate(([-1.0], inside, [1.0]))
-    masses = 2 / (degree * (degree + 1) * legendre.legval(nodes, highest) ** 2)
+    nodes: Array = np.concatenate(([-1.0], inside, [1.0]))
+    masses: Array = 2 / (degree * (degree + 1) * legendre.legval(nodes, highest) ** 2)
     return nodes, masses
 
 
@@ -70,8 +70,8 @@ def _interpolation(nodes: Array, masses: Array, points: Array) -> tuple[Array, A
     gaps = points[:, None] - nodes[None, :]
     terms = signs * np.sqrt(masses) / gaps
     total = terms.sum(axis=1, keepdims=True)
-    values = terms / total
-    slopes = values * ((terms / gaps).sum(axis=1, keepdims=True) / total - 1 / gaps)
+    values: Array = terms / total
+    slopes: Array = values * ((terms / gaps).sum(axis=1, keepdims=True) / total - 1 / gaps)
     # a constant has slope zero to round-off: the entry of the nearest node balances the rest
     rows, nearest = np.arange(len(points)), np.abs(gaps).argmin(axis=1)
     slopes[rows, nearest] = 0.0

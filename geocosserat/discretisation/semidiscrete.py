@@ -7,7 +7,7 @@ import numpy as np
 
 from geocosserat.algebra.exponential import rotation_from_vector
 from geocosserat.discretisation.mesh import Array, Mesh, make_mesh
-from geocosserat.discretisation.pose import Poses, march
+from geocosserat.discretisation.pose import Poses, cross_matrix, march, plane_rotation
 from geocosserat.discretisation.structure import Coefficient, RodStructure, structure_of
 from geocosserat.model.expressions import Expression, evaluate, jump_positions
 from geocosserat.model.records import RodModel, Scene
@@ -53,23 +53,16 @@ class SemiDiscrete:
 
     def _carried(self, states: Array) -> tuple[Array, Array, Array | None]:
         """Pose of the left end: its start, then the carried relative pose."""
-        start = self.anchor
-        count = self.structure.carried
+        start, count = self.anchor, self.structure.carried
         pose = states[..., -2 - count : -2]
-        if count == 3:
-            moved = start.position + pose[..., :2] @ start.rotation.T
-            angle = np.asarray(start.angle) + pose[..., 2]
-            c, s = np.cos(angle), np.sin(angle)
-            return moved, np.stack([np.stack([c, -s], -1), np.stack([s, c], -1)], -2), angle
-        moved = start.position + pose[..., :3] @ start.rotation.T
-        a, v = pose[..., 3], pose[..., 4:]
-        hat = np.zeros((*v.shape, 3))
-        for c in range(3):
-            i, j = (c + 1) % 3, (c + 2) % 3
-            hat[..., j, i], hat[..., i, j] = v[..., c], -v[..., c]
-        norm = a * a + np.sum(v * v, axis=-1)
-        turned = np.eye(3) + (2 / norm)[..., None, None] * (a[..., None, None] * hat + hat @ hat)
-        return moved, start.rotation @ turned, None
+        if start.angle is not None:
+            angle = start.angle + pose[..., 2]
+            return start.position + pose[..., :2] @ start.rotation.T, plane_rotation(angle), angle
+        a, v = pose[..., 3, None, None], pose[..., 4:]
+        hat = cross_matrix(v)
+        norm = a * a + np.sum(v * v, axis=-1)[..., None, None]
+        turned = np.eye(3) + 2 / norm * (a * hat + hat @ hat)
+        return start.position + pose[..., :3] @ start.rotation.T, start.rotation @ turned, None
 
 
 def _field(e: Expression, parameters: Mapping[str, float], u: Array) -> Array:
@@ -85,7 +78,7 @@ def _mobility(model: RodModel, mesh: Mesh) -> Array:
         for j in range(d):
             friction[..., i, j] = _field(model.friction[i][j], model.parameters, u)
     weighted = friction * mesh.reference.masses[:, None, None]
-    return np.linalg.inv(mesh.gather(weighted) / mesh.mass[:, None, None])
+    return np.asarray(np.linalg.inv(mesh.gather(weighted) / mesh.mass[:, None, None]), dtype=np.float64)
 
 
 def _sample(structure: RodStructure, model: RodModel, mesh: Mesh) -> tuple[Array, Array, Array]:
@@ -136,7 +129,7 @@ def discretise(scene: Scene, elements: int, degree: int) -> SemiDiscrete:
     planar = structure.motion == "planar"
     if planar:
         angle = np.asarray(scene.start.rotation[0])
-        rotation = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+        rotation = plane_rotation(angle)
     else:
         angle = None
         rotation = rotation_from_vector(np.asarray(scene.start.rotation, dtype=float))

@@ -166,7 +166,9 @@ class _Collector:
             return None
         nothing = (Number(0.0),)
         parts = (*(end.force or nothing * group.translations), *(end.torque or nothing * group.rotations))
-        wrench = tuple(self.add(f"{side}_{name}", part, "uniform") for name, part in zip(group.wrench, parts, strict=True))
+        wrench = tuple(
+            self.add(f"{side}_{name}", part, "uniform") for name, part in zip(group.wrench, parts, strict=True)
+        )
         # in the plane a couple is the same in both frames: a world load without force sees no world
         forceless = all(w == ZERO for w in wrench[: group.translations])
         frame = "body" if forceless and group.rotations == 1 else end.frame

@@ -41,7 +41,15 @@ def _machine() -> str:
 def library_path(source: str, degree: int, tool: str) -> Path:
     """Where the compiled kernel of this degree is, or will be."""
     status = os.stat(tool)
-    parts = (source, str(degree), *FLAGS, os.path.realpath(tool), str(status.st_size), str(status.st_mtime_ns), _machine())
+    parts = (
+        source,
+        str(degree),
+        *FLAGS,
+        os.path.realpath(tool),
+        str(status.st_size),
+        str(status.st_mtime_ns),
+        _machine(),
+    )
     return cache_folder() / f"{hashlib.sha256(chr(0).join(parts).encode()).hexdigest()}.so"
 
 

@@ -2,9 +2,9 @@
 
 import hashlib
 import json
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
-from pathlib import Path
 from typing import Any
 
 from geocosserat.kernel.places import cache_folder, write_whole
@@ -55,8 +55,6 @@ def find(identity: str) -> KernelText | None:
 def store(identity: str, c: str, numpy: str, signature: dict[str, Any]) -> KernelText:
     """Keeps a newly generated kernel in the user's cache; a cache that cannot be written is not an error."""
     record = {"c": c, "numpy": numpy, "signature": signature, "digest": _digest(c, numpy)}
-    try:
+    with suppress(OSError):
         write_whole(cache_folder() / f"{identity}.json", json.dumps(record).encode())
-    except OSError:
-        pass
     return KernelText(identity, c, numpy, signature, "generated")

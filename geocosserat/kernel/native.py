@@ -24,7 +24,8 @@ size_t rod_block(void);
 size_t rod_scratch(void);
 int rod_rate(const rod *r, double t, const double *y, double *dy);
 int rod_observe(const rod *r, double t, const double *y, double *twist, double *stress, double *energy);
-int rod_blocks(const rod *r, double t, const double *y, double *lower, double *diagonal, double *upper, double *scratch);
+int rod_blocks(const rod *r, double t, const double *y, double *lower, double *diagonal, double *upper,
+               double *scratch);
 int rod_dense(const rod *r, double t, const double *y, double *J, double *lower, double *diagonal, double *upper,
               double *scratch);
 int rod_factor(int elements, double gamma, const double *lower, const double *diagonal, const double *upper,
@@ -128,8 +129,15 @@ class NativeRod:
         def address(thing: Any) -> int:
             return int(ffi.cast("uintptr_t", thing))
 
-        functions = (getattr(self._lib, f"problem_{name}") for name in ("rate", "jacobian", "setup", "solve"))
-        return Callbacks(address(problem), *(address(f) for f in functions), keep=(problem, arrays, pivots, self))
+        lib = self._lib
+        return Callbacks(
+            data=address(problem),
+            rate=address(lib.problem_rate),
+            jacobian=address(lib.problem_jacobian),
+            setup=address(lib.problem_setup),
+            solve=address(lib.problem_solve),
+            keep=(problem, arrays, pivots, self),
+        )
 
     def blocks(self, t: float, y: Array) -> tuple[Array, Array, Array]:
         """Copies of the block-tridiagonal Jacobian, (elements, block, block) each."""
@@ -158,7 +166,13 @@ class NativeRod:
         factors, pivots, _ = self._factors
         at = self._at
         failed = self._lib.rod_factor(
-            self._elements, gamma, at(lower), at(diagonal), at(upper), at(factors), self._ffi.from_buffer(self._int, pivots)
+            self._elements,
+            gamma,
+            at(lower),
+            at(diagonal),
+            at(upper),
+            at(factors),
+            self._ffi.from_buffer(self._int, pivots),
         )
         if failed:
             raise np.linalg.LinAlgError(f"the linear system of element {failed - 1} is singular")

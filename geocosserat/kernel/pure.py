@@ -15,7 +15,16 @@ class NumpyRod:
     def __init__(self, module: types.ModuleType, rod: SemiDiscrete) -> None:
         mesh = rod.mesh
         self._rod: Any = module.Rod(
-            mesh.elements, mesh.degree, mesh.half, mesh.mass, mesh.u, rod.tables, rod.uniform, rod.point, rod.node, rod.base
+            mesh.elements,
+            mesh.degree,
+            mesh.half,
+            mesh.mass,
+            mesh.u,
+            rod.tables,
+            rod.uniform,
+            rod.point,
+            rod.node,
+            rod.base,
         )
         self.size = len(rod.state)
         self._blocks: tuple[Array, Array, Array] | None = None

@@ -15,9 +15,12 @@ from sksundae.cvode import CVODE, CVODEPrecond
 from geocosserat.kernel.contract import Array, Kernel
 from geocosserat.solver.counted import Counted
 from geocosserat.solver.settings import DENSE_LIMIT, KRYLOV, STEP_LIMIT
-from geocosserat.solver.trajectory import Progress, Trajectory
+from geocosserat.solver.trajectory import Frame, Progress, Trajectory
 
-def cvode(kernel: Kernel, start: Array, times: Array, rtol: float, atol: Array, progress: Progress) -> Trajectory:
+
+def cvode(
+    kernel: Kernel, start: Array, times: Array, rtol: float, atol: Array, progress: Progress, frame: Frame
+) -> Trajectory:
     """Integrates from times[0] through all of `times`; see `integrate`.
 
     The binding tells no step counts: distinct instants of the rate stand for the steps tried.
@@ -41,9 +44,16 @@ def cvode(kernel: Kernel, start: Array, times: Array, rtol: float, atol: Array, 
             break
         states[i] = result.y
         done = i + 1
+        frame(i, states[i])
         progress((times[i] - times[0]) / (times[-1] - times[0]), counted.instants)
     return Trajectory(
-        times[:done].copy(), states[:done], counted.rates, counted.jacobians, counted.instants, done == len(times), reason
+        times=times[:done].copy(),
+        states=states[:done],
+        rates=counted.rates,
+        jacobians=counted.jacobians,
+        steps=counted.instants,
+        reached=done == len(times),
+        reason=reason,
     )
 
 
@@ -63,9 +73,7 @@ def _precondition(counted: Counted) -> CVODEPrecond:
         renewed[0] = int(not usable)
         kernel.factor(gamma)
 
-    def solve(
-        t: float, y: Array, rate: Array, b: Array, x: Array, gamma: float, tolerance: float, side: int
-    ) -> None:
+    def solve(t: float, y: Array, rate: Array, b: Array, x: Array, gamma: float, tolerance: float, side: int) -> None:
         kernel.solve(b, x)
 
     return CVODEPrecond(setup, solve, side="left")

@@ -10,7 +10,7 @@ import numpy as np
 from geocosserat.kernel.contract import Array, Kernel, NativeKernel
 from geocosserat.solver.settings import DENSE_LIMIT, KRYLOV, STEP_LIMIT
 from geocosserat.solver.sundials import Sundials
-from geocosserat.solver.trajectory import Progress, Trajectory
+from geocosserat.solver.trajectory import Frame, Progress, Trajectory
 
 BDF, NORMAL, LEFT = 2, 1, 1
 TOO_MUCH_WORK, STOPPED = -1, 1
@@ -19,11 +19,18 @@ BREATH = 500
 
 
 def cvode_native(
-    library: Sundials, kernel: Kernel, start: Array, times: Array, rtol: float, atol: Array, progress: Progress
+    library: Sundials,
+    kernel: Kernel,
+    start: Array,
+    times: Array,
+    rtol: float,
+    atol: Array,
+    progress: Progress,
+    frame: Frame,
 ) -> Trajectory:
     """Integrates a NativeKernel from times[0] through all of `times`; see `integrate`."""
     with _Session(library, kernel, start, float(times[0]), rtol, atol) as session:
-        return session.integrate(times, progress)
+        return session.integrate(times, progress, frame)
 
 
 class _Session:
@@ -84,7 +91,7 @@ class _Session:
         getattr(self.lib, f"CVodeGetNum{name}")(self.cvode[0], value)
         return int(value[0])
 
-    def integrate(self, times: Array, progress: Progress) -> Trajectory:
+    def integrate(self, times: Array, progress: Progress, frame: Frame) -> Trajectory:
         cvode, lib = self.cvode[0], self.lib
         first, last = float(times[0]), float(times[-1])
         states = np.empty((len(times), len(self.y)))
@@ -108,6 +115,7 @@ class _Session:
                 reason = f"CVODE returned values that are not finite at t = {reached_t[0]:.6g}"
                 break
             states[done] = self.y
+            frame(done, states[done])
             done += 1
             progress((reached_t[0] - first) / (last - first), steps)
         return Trajectory(

@@ -1,19 +1,22 @@
 """One door to all integrators, chosen by name. Nothing here knows what a rod is."""
 
+from collections.abc import Callable
 from importlib import import_module
-from typing import Any
+from typing import TypeAlias
 
 import numpy as np
 
 from geocosserat.kernel.contract import Array, Kernel, NativeKernel
 from geocosserat.solver.cvode_native import cvode_native
 from geocosserat.solver.sundials import sundials
-from geocosserat.solver.trajectory import Progress, Trajectory
+from geocosserat.solver.trajectory import Frame, Progress, Trajectory
+
+Integrator: TypeAlias = Callable[[Kernel, Array, Array, float, Array, Progress, Frame], Trajectory]
 
 METHODS = ("cvode", "radau", "bdf", "lsoda")
 
 
-def _silent(fraction: float, steps: int) -> None:
+def _silent(*_: object) -> None:
     pass
 
 
@@ -25,6 +28,7 @@ def integrate(
     rtol: float = 1e-6,
     atol: float | Array = 1e-9,
     progress: Progress = _silent,
+    frame: Frame = _silent,
 ) -> Trajectory:
     """Integrates y' = f(t, y) from `start` (size,) at times[0]; states at all of `times` (T >= 2, increasing).
 
@@ -39,13 +43,14 @@ def integrate(
         raise ValueError("expected a finite initial state, found infinities or NaN; check the start of the scene")
     tolerance = np.broadcast_to(np.asarray(atol, dtype=float), start.shape).copy()
     if method != "cvode":
-        return _module("scipy_methods").scipy_method(method, kernel, start, times, rtol, tolerance, progress)
+        return _integrator("scipy_methods", method)(kernel, start, times, rtol, tolerance, progress, frame)
     library = sundials() if isinstance(kernel, NativeKernel) else None
     if library is not None:
-        return cvode_native(library, kernel, start, times, rtol, tolerance, progress)
-    return _module("cvode").cvode(kernel, start, times, rtol, tolerance, progress)
+        return cvode_native(library, kernel, start, times, rtol, tolerance, progress, frame)
+    return _integrator("cvode", "cvode")(kernel, start, times, rtol, tolerance, progress, frame)
 
 
-def _module(name: str) -> Any:
-    """An integrator's module, imported when it is first asked for: scipy and scikit-sundae start slowly."""
-    return import_module(f"geocosserat.solver.{name}")
+def _integrator(module: str, name: str) -> Integrator:
+    """An integrator, imported when it is first asked for: scipy and scikit-sundae start slowly."""
+    found: Integrator = getattr(import_module(f"geocosserat.solver.{module}"), name)
+    return found

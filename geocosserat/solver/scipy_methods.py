@@ -5,6 +5,7 @@ SIAM J. Sci. Stat. Comput. 4 (1983) 136.
 """
 
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 from scipy.integrate import BDF, LSODA, OdeSolver, Radau
@@ -12,30 +13,33 @@ from scipy.integrate import BDF, LSODA, OdeSolver, Radau
 from geocosserat.kernel.contract import Array, Kernel
 from geocosserat.solver.counted import Counted
 from geocosserat.solver.settings import STEP_LIMIT
-from geocosserat.solver.trajectory import Progress, Trajectory
-
-METHODS: dict[str, type[OdeSolver]] = {"radau": Radau, "bdf": BDF, "lsoda": LSODA}
+from geocosserat.solver.trajectory import Frame, Progress, Trajectory
 
 
-def scipy_method(
-    method: str, kernel: Kernel, start: Array, times: Array, rtol: float, atol: Array, progress: Progress
+def _integrate(
+    method: type[OdeSolver],
+    kernel: Kernel,
+    start: Array,
+    times: Array,
+    rtol: float,
+    atol: Array,
+    progress: Progress,
+    frame: Frame,
 ) -> Trajectory:
-    """Integrates from times[0] through all of `times` with one of METHODS; see `integrate`."""
+    """Integrates from times[0] through all of `times`; see `integrate`."""
     counted = Counted(kernel)
-    solver = METHODS[method](
-        _fresh(counted), times[0], start.copy(), times[-1], rtol=rtol, atol=atol, jac=counted.jacobian
-    )
+    solver = method(_fresh(counted), times[0], start.copy(), times[-1], rtol=rtol, atol=atol, jac=counted.jacobian)
     states = np.empty((len(times), kernel.size))
     states[0] = start
     done, steps, reason = 1, 0, ""
     while solver.status == "running" and done < len(times):
         if steps == STEP_LIMIT:
-            reason = f"{method} stopped at t = {solver.t:.6g}: {STEP_LIMIT} steps did not reach the end"
+            reason = f"{method.__name__} stopped at t = {solver.t:.6g}: {STEP_LIMIT} steps did not reach the end"
             break
         message = solver.step()
         steps += 1
         if solver.status == "failed":
-            reason = f"{method} stopped at t = {solver.t:.6g}: {message}"
+            reason = f"{method.__name__} stopped at t = {solver.t:.6g}: {message}"
             break
         interpolant = None
         while done < len(times) and times[done] <= solver.t:
@@ -44,6 +48,7 @@ def scipy_method(
             else:
                 interpolant = interpolant or solver.dense_output()
                 states[done] = interpolant(times[done])
+            frame(done, states[done])
             done += 1
         progress((solver.t - times[0]) / (times[-1] - times[0]), steps)
     return Trajectory(
@@ -60,3 +65,6 @@ def _fresh(counted: Counted) -> Callable[[float, Array], Array]:
         return out
 
     return rate
+
+
+radau, bdf, lsoda = (partial(_integrate, method) for method in (Radau, BDF, LSODA))

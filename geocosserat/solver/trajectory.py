@@ -8,6 +8,9 @@ from geocosserat.kernel.contract import Array
 Progress = Callable[[float, int], None]
 """Called with the fraction of the time span done and the number of steps so far."""
 
+Frame = Callable[[int, Array], None]
+"""Called with the number and the state (size,) of each instant of output that is reached."""
+
 
 @dataclass(frozen=True, eq=False)
 class Trajectory:

@@ -30,7 +30,7 @@ SEE_ALL = ("", "__main__", "cli", "conductor")  # "" is geocosserat/__init__.py
 EVERYWHERE = ("",)
 LIBRARIES = {
     # library: the stages and modules that may import it
-    "cffi": ("kernel",),
+    "cffi": ("kernel", "solver"),
     "click": ("cli",),
     "h5netcdf": ("results",),
     "h5py": ("results",),
