@@ -32,13 +32,14 @@ def _c_array(name: str, values: Iterable[float]) -> str:
 
 def _header(rod: SemiDiscrete, until: float) -> str:
     mesh, group = rod.mesh, rod.structure.group
+    arrays = {**_arrays(rod), "scale": 1 / mesh.half, "share": 1 / mesh.mass}
     names = ", ".join(f'"{name}"' for name in group.strain)
     return (
         "/* The numbers of one scene, for the kernel rod.c. */\n"
         f"enum {{ ELEMENTS = {mesh.elements}, POINTS = {mesh.elements * mesh.degree}, SIZE = {len(rod.state)} }};\n"
         f"static const double UNTIL = {until!r};\n"
         f"static const char *const names[] = {{ {names} }};\n"
-        + "".join(_c_array(name, np.ravel(values)) for name, values in _arrays(rod).items())
+        + "".join(_c_array(name, np.ravel(values)) for name, values in arrays.items())
     )
 
 

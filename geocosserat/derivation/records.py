@@ -108,9 +108,11 @@ class FieldEquations:
         return (*(name for name, there in present if there), *dict.fromkeys(effects), *loaded)
 
     @property
-    def fields(self) -> frozenset[str]:
-        """Names of all fields that occur."""
-        return field_names(self._sides())
+    def fields(self) -> tuple[str, ...]:
+        """Names of all fields that occur: turn, twist, stress, wrench, orientation."""
+        vectors = (self.turn, self.twist, self.stress, self.wrench, self.orientation.fields)
+        present = field_names(self._sides())
+        return tuple(name for vector in vectors for f in vector if (name := f.func.__name__) in present)
 
     @property
     def parameters(self) -> tuple[str, ...]:

@@ -16,7 +16,7 @@ from geocosserat.kernel.contract import Array, Callbacks
 DECLARATIONS = """
 typedef struct rod {
     int elements;
-    const double *half, *mass, *u, *tables, *uniform, *point, *node, *base;
+    const double *half, *scale, *mass, *share, *u, *tables, *uniform, *point, *node, *base;
     double *work;
 } rod;
 size_t rod_work(int elements);
@@ -67,7 +67,9 @@ class NativeRod:
         self._d, self._points = rod.structure.group.dimension, rod.mesh.elements * rod.mesh.degree
         arrays = {
             "half": rod.mesh.half,
+            "scale": 1 / rod.mesh.half,
             "mass": rod.mesh.mass,
+            "share": 1 / rod.mesh.mass,
             "u": rod.mesh.u,
             "tables": rod.tables,
             "uniform": rod.uniform,

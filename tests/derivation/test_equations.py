@@ -12,7 +12,7 @@ import sympy as sp
 from geocosserat.algebra.groups import SE2, SE3
 from geocosserat.derivation.convert import to_sympy
 from geocosserat.derivation.equations import derive
-from geocosserat.derivation.notation import T, U, field, is_field
+from geocosserat.derivation.notation import T, U, field, field_names, is_field
 from geocosserat.model.expressions import evaluate
 from geocosserat.model.records import End, RodModel, Weight
 from tests.derivation.rods import (
@@ -313,6 +313,18 @@ def test_the_parameters_listed_are_those_that_occur() -> None:
     assert derive(PLAIN_PLANAR).parameters == ("kappa",)
     assert derive(PLAIN_SPATIAL).parameters == ("kappa", "b")
     assert derive(HEAVY_PLANAR).parameters == ("kappa", "g", "a", "b")
+
+
+def test_the_fields_listed_are_those_that_occur() -> None:
+    """Turn, twist, stress, wrench and orientation, in this order."""
+    assert derive(PLAIN_PLANAR).fields == (*SE2.strain, *SE2.twist, *SE2.stress, *SE2.wrench)
+    assert derive(HEAVY_PLANAR).fields[-1] == "theta"
+    for model in RODS.values():
+        equations = derive(model)
+        occurring = {
+            f for part in equations.parts.values() for e in part for f in field_names((e.left, e.right))
+        }
+        assert set(equations.fields) == occurring
 
 
 def test_the_terms_are_listed_in_words() -> None:

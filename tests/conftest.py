@@ -1,0 +1,37 @@
+"""What all tests share: a private cache for generated and compiled kernels, the examples, and a C compiler if there is one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from geocosserat.kernel.compile import compiler
+
+ROOT = Path(__file__).parents[1]
+
+
+@pytest.fixture(scope="session", autouse=True)
+def cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    """The cache of this test session: kernels of earlier versions are never used, and the user's own stay untouched."""
+    folder = tmp_path_factory.mktemp("cache")
+    folder.chmod(0o700)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("GEOCOSSERAT_CACHE", str(folder))
+        yield folder
+
+
+@pytest.fixture(scope="session")
+def examples() -> Path:
+    """The folder of the example scenes."""
+    return ROOT / "examples"
+
+
+@pytest.fixture(scope="session")
+def c_compiler() -> str:
+    """Path of the C compiler; tests that need one are skipped where there is none."""
+    tool = compiler()
+    if tool is None:
+        pytest.skip("no C compiler on the path, or CC is set to none")
+    return tool

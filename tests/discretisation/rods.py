@@ -1,0 +1,168 @@
+"""The cast: rods that between them have every feature a kernel can have, in the plane and in space.
+
+Numbers are of order one, so that no term hides behind another.
+"""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Mapping
+from functools import cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geocosserat.discretisation.semidiscrete import SemiDiscrete, discretise
+from geocosserat.model.records import Scene
+from geocosserat.model.scene import load_scene
+
+Array = NDArray[np.float64]
+MOTIONS = ("planar", "spatial")
+SIZES = ((1, 5), (4, 2), (6, 1))
+"""(elements, degree): spectral, in between, and the staggered second-order grid."""
+
+NASTY = {"int": 0.3, "half": -0.7, "k_1_1": 1.3, "double": 0.4, "_": 0.2, "x0": 0.6, "P": 0.5, "p_int": -0.3, "self": 0.9}
+"""Parameters named like words of C and Python, and like names inside a kernel."""
+
+PLAIN = {
+    "planar": {"stiffness": [3.0, 2.0, 1.5], "friction": [1.0, 2.0, 0.5]},
+    "spatial": {"stiffness": [3.0, 2.0, 2.5, 0.9, 1.5, 1.2], "friction": [1.0, 2.0, 1.6, 0.3, 0.5, 0.4]},
+}
+VARYING = {
+    "planar": {
+        "stiffness": ["3 + u", "2*exp(-u)", "1.5 + sin(3*u)**2"],
+        "friction": ["1 + u**2", 2.0, "0.5 + 0.2*u"],
+        "reference": ["1 + 0.1*u", 0.2, "2*cos(u)"],
+    },
+    "spatial": {
+        "stiffness": ["3 + u", "2*exp(-u)", 2.5, "0.9 + 0.3*u", "1.5 + sin(3*u)**2", 1.2],
+        "friction": ["1 + u**2", 2.0, "1.6 - u/3", "0.3 + 0.2*u", 0.5, 0.4],
+        "reference": ["1 + 0.1*u", 0.2, 0.0, "u", "2*cos(u)", -0.5],
+    },
+}
+STEPPED = {
+    "planar": {
+        "stiffness": [3.0, "2 - heaviside(u - middle)", "1.5*(1 + heaviside(u - middle))"],
+        "friction": ["1 + 2*heaviside(u - middle)", 2.0, "0.5 - 0.3*heaviside(u - middle)"],
+        "reference": [1.0, 0.0, "1 - 2*heaviside(u - middle)"],
+    },
+    "spatial": {
+        "stiffness": [3.0, "2 - heaviside(u - middle)", 2.5, "0.9 + heaviside(u - middle)", 1.5, 1.2],
+        "friction": ["1 + 2*heaviside(u - middle)", 2.0, 1.6, "0.5 - 0.3*heaviside(u - middle)", 0.5, 0.4],
+        "reference": [1.0, 0.0, 0.0, "1 - 2*heaviside(u - middle)", 0.5, "heaviside(u - middle)"],
+    },
+}
+
+
+def full(motion: str, varying: str = "0") -> list[list[str | float]]:
+    """A full symmetric positive definite matrix, no two entries alike; `varying` is added along the diagonal."""
+    d = 3 if motion == "planar" else 6
+    return [
+        [f"{2 + 0.3 * i} + {varying}" if i == j else (-1) ** (i + j) * 0.3 / (1 + i + j) for j in range(d)]
+        for i in range(d)
+    ]
+
+
+def blocks(motion: str) -> list[list[float]]:
+    """A matrix that couples the first component to the last, and nothing else."""
+    d = 3 if motion == "planar" else 6
+    matrix = np.diag(1.0 + 0.3 * np.arange(d))
+    matrix[0, -1] = matrix[-1, 0] = 0.4
+    return [[float(x) for x in row] for row in matrix]
+
+
+def load(motion: str, *entries: str | float, **more: Any) -> dict[str, Any]:
+    """A loaded free end: force and torque from the six spatial entries, or those of them that the plane has."""
+    if motion == "planar":
+        return {"kind": "free", "force": list(entries[:2]), "torque": entries[5], **more}
+    return {"kind": "free", "force": list(entries[:3]), "torque": list(entries[3:]), **more}
+
+
+def weight(motion: str, *force: str | float) -> dict[str, Any]:
+    return {"kind": "weight", "force": list(force[: 2 if motion == "planar" else 3])}
+
+
+FREE, CLAMPED = {"kind": "free"}, {"kind": "clamped"}
+
+
+def _rod(motion: str, material: Mapping[str, Any], **more: Any) -> dict[str, Any]:
+    turned = {"angle": 0.7} if motion == "planar" else {"rotation": [0.3, -0.4, 0.7]}
+    place = [0.3, -0.2] if motion == "planar" else [0.3, -0.2, 0.5]
+    values = {"rod": {"motion": motion, "length": 1.3, **material}, "run": {"until": 1.0}}
+    return values | {"start": turned | {"position": place}} | more
+
+
+def cast(motion: str) -> dict[str, dict[str, Any]]:
+    """The scenes of one motion, by name."""
+    full_rod = {"stiffness": full(motion, "u"), "friction": full(motion, "u**2"), "reference": VARYING[motion]["reference"]}
+    return {
+        "plain": _rod(motion, PLAIN[motion]),
+        "pushed": _rod(
+            motion,
+            VARYING[motion],
+            ends={"right": load(motion, "0.5*sin(t)", -0.4, 0.3, "0.2*t", 0.1, 0.25)},
+        ),
+        "dead": _rod(motion, PLAIN[motion], ends={"right": load(motion, 0.5, -0.4, 0.3, 0, 0, 0, frame="world")}),
+        "twisted": _rod(motion, PLAIN[motion], ends={"right": load(motion, 0, 0, 0, 0.2, 0.3, "0.4*t", frame="world")}),
+        "drifting": _rod(
+            motion,
+            {"stiffness": blocks(motion), "friction": blocks(motion)},
+            ends={"left": load(motion, 0.1, 0.2, 0.15, 0.3, 0.1, 0.2), "right": FREE},
+        ),
+        "hung": _rod(
+            motion,
+            {"stiffness": blocks(motion), "friction": full(motion)},
+            ends={"left": load(motion, 0.5, -0.4, 0.3, 0.2, 0.1, 0.25, frame="world"), "right": CLAMPED},
+            effects=[weight(motion, 0.0, "-1 - u", 0.4)],
+        ),
+        "held": _rod(
+            motion,
+            STEPPED[motion],
+            parameters={"middle": 0.65},
+            ends={"left": CLAMPED, "right": CLAMPED},
+            effects=[weight(motion, "0.3*heaviside(u - middle)", "-1 + cos(t)*u", 0.0)],
+        ),
+        "everything": _rod(
+            motion,
+            full_rod,
+            parameters=NASTY,
+            ends={
+                "left": load(motion, "int*t", "half", "k_1_1", "double - t", "_", "x0*cos(P*t)", frame="world"),
+                "right": load(motion, "p_int", "self*t", 0, "int", "t**2", "-half"),
+            },
+            effects=[weight(motion, "double*t*sin(u)", -0.5, "u"), weight(motion, 0.0, "x0*heaviside(t - 0.2)", 0.3)],
+        ),
+    }
+
+
+CAST = {f"{motion} {name}": values for motion in MOTIONS for name, values in cast(motion).items()}
+NAMES = tuple(CAST)
+WORLD = tuple(name for name in NAMES if name.split()[1] in ("dead", "hung", "held", "everything")) + ("spatial twisted",)
+"""Rods whose loads see the world."""
+
+
+def changed(name: str, **tables: Mapping[str, Any]) -> Scene:
+    """The scene of that name with entries of some of its tables replaced."""
+    values = copy.deepcopy(CAST[name])
+    for table, entries in tables.items():
+        values[table] = {**values.get(table, {}), **entries}
+    return load_scene(values)
+
+
+@cache
+def scene(name: str) -> Scene:
+    return load_scene(CAST[name])
+
+
+@cache
+def rod(name: str, elements: int, degree: int) -> SemiDiscrete:
+    return discretise(scene(name), elements, degree)
+
+
+def random_state(rod: SemiDiscrete, seed: int, size: float = 0.4) -> Array:
+    """A state far from rest: turn at its start plus `size` times noise, a carried pose of any norm, any energies."""
+    rng = np.random.default_rng(seed)
+    state = rod.state.copy()
+    state += size * rng.normal(size=len(state))
+    return state

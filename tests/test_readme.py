@@ -1,0 +1,71 @@
+"""The README's code does what the README says."""
+
+import json
+import os
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import geocosserat
+
+ROOT = Path(__file__).parents[1]
+BLOCKS = re.findall(r"^```(\w+)\n(.*?)^```", (ROOT / "README.md").read_text(), re.MULTILINE | re.DOTALL)
+
+
+def blocks(language: str) -> list[str]:
+    return [text for found, text in BLOCKS if found == language]
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "helix.toml").write_text(blocks("toml")[0])
+    return tmp_path
+
+
+def _environment() -> dict[str, str]:
+    paths = [str(ROOT), *filter(None, [os.environ.get("PYTHONPATH")])]
+    return {**os.environ, "PYTHONPATH": os.pathsep.join(paths)}
+
+
+@pytest.mark.parametrize("line", [line for block in blocks("sh") for line in block.splitlines()])
+def test_every_command_of_the_readme_works(line: str, folder: Path) -> None:
+    """Each shell line runs as printed and says something."""
+    words = shlex.split(line)
+    assert words[0] == "geocosserat"
+    done = subprocess.run(
+        [sys.executable, "-m", *words], cwd=folder, env=_environment(), capture_output=True, text=True, timeout=300
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout
+    if "--json" in words:
+        assert json.loads(done.stdout)["error"]["estimated"] <= 1e-8
+    if "--out" in words:
+        assert any((folder / words[words.index("--out") + 1]).iterdir())
+
+
+def test_the_python_of_the_readme_works(folder: Path) -> None:
+    """The Python block runs as printed and prints a tip, a shape and equations."""
+    done = subprocess.run(
+        [sys.executable, "-c", blocks("python")[0]],
+        cwd=folder,
+        env=_environment(),
+        capture_output=True,
+        text=True,
+        timeout=300,
+    )
+    assert done.returncode == 0, done.stderr
+    assert "(11, " in done.stdout
+    assert "Compatibility" in done.stdout
+
+
+def test_the_twelve_lines_make_the_rod_of_the_demo(folder: Path, examples: Path) -> None:
+    """The README's short scene and the demo's scene end at the same place."""
+    assert len(blocks("toml")[0].splitlines()) == 12
+    short = geocosserat.run(folder / "helix.toml", settings=["run.frames=2"])
+    demo = geocosserat.run(examples / "helix.toml", settings=["run.frames=2"])
+    np.testing.assert_allclose(short.tip["position"], demo.tip["position"], rtol=0, atol=2e-6)
