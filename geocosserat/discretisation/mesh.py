@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import pairwise
+from math import ceil
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +11,8 @@ from numpy.typing import NDArray
 from geocosserat.discretisation.quadrature import ReferenceElement, reference_element
 
 Array = NDArray[np.float64]
+ROUND_OFF = 16 * float(np.finfo(float).eps)
+"""Relative to the length: steps nearer than this to each other, or to an end, are one and the same."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,8 +71,9 @@ class Mesh:
 
     def local_nodes(self) -> Array:
         """(n, p+1) coordinates of each element's own nodes, the outer ones a hair inside: one-sided values at steps."""
-        x = self.reference.nodes * (1 - 1e-12)
-        return self._spread(x)
+        places, hair = self._spread(self.reference.nodes), 4 * ROUND_OFF * self.edges[-1]
+        places[:, 0], places[:, -1] = self.edges[:-1] + hair, self.edges[1:] - hair
+        return places
 
     def _spread(self, x: Array) -> Array:
         middle = (self.edges[:-1] + self.edges[1:]) / 2
@@ -79,10 +83,12 @@ class Mesh:
 def make_mesh(length: float, elements: int, degree: int, steps: Iterable[float] = ()) -> Mesh:
     """A mesh of [0, length] with at least `elements` elements and an edge on every step inside.
 
-    The pieces between steps are cut evenly, each into its share of the elements and at least one.
+    The pieces between steps are cut evenly, each into its share of the elements, rounded up.
     """
-    inside = sorted({float(x) for x in steps if 0 < x < length})
-    breaks = [0.0, *inside, length]
-    pieces = [np.linspace(a, b, max(1, round(elements * (b - a) / length)) + 1)[:-1] for a, b in pairwise(breaks)]
+    gap = ROUND_OFF * length
+    inside = sorted(float(x) for x in steps if gap < x < length - gap)
+    breaks = [*(a for a, b in pairwise([0.0, *inside, length]) if b - a > gap), length]
+    shares = [max(1, ceil(elements * (b - a) / length - 1e-9)) for a, b in pairwise(breaks)]
+    pieces = [np.linspace(a, b, n + 1)[:-1] for (a, b), n in zip(pairwise(breaks), shares, strict=True)]
     edges = np.concatenate([*pieces, [length]])
     return Mesh(edges, reference_element(degree))

@@ -21,6 +21,8 @@ typedef struct rod {
 } rod;
 size_t rod_work(int elements);
 size_t rod_block(void);
+size_t rod_pair(void);
+size_t rod_factors(void);
 size_t rod_scratch(void);
 int rod_rate(const rod *r, double t, const double *y, double *dy);
 int rod_observe(const rod *r, double t, const double *y, double *twist, double *stress, double *energy);
@@ -102,8 +104,8 @@ class NativeRod:
     def _space(self) -> tuple[Array, Array, Array, Array]:
         if self._blocks is None:
             b = self._lib.rod_block()
-            lower, diagonal, upper = (np.empty((self._elements, b, b)) for _ in range(3))
-            self._blocks = lower, diagonal, upper, np.empty(self._lib.rod_scratch())
+            lower, upper = (np.empty((self._elements, self._lib.rod_pair())) for _ in range(2))
+            self._blocks = lower, np.empty((self._elements, b, b)), upper, np.empty(self._lib.rod_scratch())
         return self._blocks
 
     def callbacks(self, vector: int, matrix: int, dense: bool) -> Callbacks:
@@ -117,7 +119,7 @@ class NativeRod:
             "diagonal": diagonal,
             "upper": upper,
             "scratch": scratch,
-            "factors": np.empty(0 if dense else 3 * diagonal.size),
+            "factors": np.empty(0 if dense else self._elements * self._lib.rod_factors()),
             "solving": np.empty(self._elements * b),
             "dense": np.empty(self.size * (self.size + 6) if dense else 0),
         }
@@ -142,10 +144,16 @@ class NativeRod:
         )
 
     def blocks(self, t: float, y: Array) -> tuple[Array, Array, Array]:
-        """Copies of the block-tridiagonal Jacobian, (elements, block, block) each."""
+        """The block-tridiagonal Jacobian, (elements, block, block) each."""
         self.prepare(t, y)
         lower, diagonal, upper, _ = self._space()
-        return lower.copy(), diagonal.copy(), upper.copy()
+        b = diagonal.shape[1]
+
+        def product(pairs: Array) -> Array:
+            left, right = np.split(pairs, 2, axis=1)
+            return left.reshape(self._elements, b, -1) @ right.reshape(self._elements, -1, b)
+
+        return product(lower), diagonal.copy(), product(upper)
 
     def jacobian(self, t: float, y: Array) -> Array:
         space = [self._at(a) for a in self._space()]
@@ -161,7 +169,7 @@ class NativeRod:
         if self._factors is None:
             b = diagonal.shape[1]
             self._factors = (
-                np.empty((3, *diagonal.shape)),
+                np.empty(self._elements * self._lib.rod_factors()),
                 np.empty(self._elements * b, dtype=np.intc),
                 np.empty(self._elements * b),
             )

@@ -22,7 +22,9 @@ MOTIONS = ("planar", "spatial")
 SIZES = ((1, 5), (4, 2), (6, 1))
 """(elements, degree): spectral, in between, and the staggered second-order grid."""
 
-NASTY = {"int": 0.3, "half": -0.7, "k_1_1": 1.3, "double": 0.4, "_": 0.2, "x0": 0.6, "P": 0.5, "p_int": -0.3, "self": 0.9}
+NASTY = {
+    "int": 0.3, "half": -0.7, "k_1_1": 1.3, "double": 0.4, "_": 0.2, "x0": 0.6, "P": 0.5, "p_int": -0.3, "self": 0.9,
+}  # fmt: skip
 """Parameters named like words of C and Python, and like names inside a kernel."""
 
 PLAIN = {
@@ -95,7 +97,7 @@ def _rod(motion: str, material: Mapping[str, Any], **more: Any) -> dict[str, Any
 
 def cast(motion: str) -> dict[str, dict[str, Any]]:
     """The scenes of one motion, by name."""
-    full_rod = {"stiffness": full(motion, "u"), "friction": full(motion, "u**2"), "reference": VARYING[motion]["reference"]}
+    curved = {"reference": VARYING[motion]["reference"]}
     return {
         "plain": _rod(motion, PLAIN[motion]),
         "pushed": _rod(
@@ -125,7 +127,7 @@ def cast(motion: str) -> dict[str, dict[str, Any]]:
         ),
         "everything": _rod(
             motion,
-            full_rod,
+            {"stiffness": full(motion, "u"), "friction": full(motion, "u**2"), **curved},
             parameters=NASTY,
             ends={
                 "left": load(motion, "int*t", "half", "k_1_1", "double - t", "_", "x0*cos(P*t)", frame="world"),
@@ -138,7 +140,8 @@ def cast(motion: str) -> dict[str, dict[str, Any]]:
 
 CAST = {f"{motion} {name}": values for motion in MOTIONS for name, values in cast(motion).items()}
 NAMES = tuple(CAST)
-WORLD = tuple(name for name in NAMES if name.split()[1] in ("dead", "hung", "held", "everything")) + ("spatial twisted",)
+_SEEING = ("dead", "hung", "held", "everything")
+WORLD = (*(name for name in NAMES if name.split()[1] in _SEEING), "spatial twisted")
 """Rods whose loads see the world."""
 
 
