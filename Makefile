@@ -19,7 +19,7 @@ help:
 	@echo "another Python: make PYTHON=python3.12 ..."
 
 demo: .venv/installed
-	$(BIN)/geocosserat run examples/helix.toml --out $(OUT)/demo
+	$(BIN)/geocosserat run examples/helix.toml --out $(OUT)/demo --overwrite
 
 test: .venv/tools
 	$(BIN)/python -m ruff check .

@@ -28,6 +28,11 @@ def table(scene: str, reference: tuple[int, int]) -> str:
     return "\n".join([heading, "|" + "---|" * len(SETTINGS), "| " + " | ".join(f"{e:.1e}" for e in errors) + " |"])
 
 
+def tables() -> str:
+    """Both scenes, in Markdown."""
+    scenes = {"cantilever.toml": (2, 24), "helix.toml": (4, 24)}
+    return "\n".join(f"{scene}\n\n{table(scene, reference)}\n" for scene, reference in scenes.items())
+
+
 if __name__ == "__main__":
-    print("cantilever.toml\n" + table("cantilever.toml", (2, 24)))
-    print("helix.toml\n" + table("helix.toml", (4, 24)))
+    print(tables())

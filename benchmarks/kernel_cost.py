@@ -159,7 +159,7 @@ def measure(rounds: int = 15) -> list[dict[str, Any]]:
 def table(rows: list[dict[str, Any]]) -> str:
     """The rows as a table in Markdown."""
     lines = [
-        "| motion | degree | points | operations a point | generated, ns (min, median) | by hand, ns | ratio | difference |",
+        "| motion | degree | points | operations a point | generated, ns (min, median) | by hand, ns | ratio | gap |",
         "|---|---|---|---|---|---|---|---|",
     ]
     lines += [

@@ -47,7 +47,7 @@ def record(outputs: Mapping[str, sp.Expr], prefix: str = "x", given: Mapping[str
 
 
 def _eliminate(named: Mapping[str, sp.Expr], prefix: str) -> tuple[list[tuple[sp.Symbol, sp.Expr]], list[sp.Expr]]:
-    steps, reduced = sp.cse([sp.sympify(e) for e in named.values()], symbols=sp.numbered_symbols(prefix), order="none")
+    steps, reduced = sp.cse([sp.S.Zero + e for e in named.values()], symbols=sp.numbered_symbols(prefix), order="none")
     return steps, reduced
 
 

@@ -73,7 +73,7 @@ class _Bar:
         self._next = now + _PAUSE
         if self._shown is None:
             self._shown = self._open()
-        self._shown.update(self._shown.task_ids[0], completed=min(max(fraction, 0.0), 1.0), steps=steps)
+        self._shown.update(self._shown.task_ids[0], completed=fraction, steps=steps)
         self._shown.refresh()
 
     def _open(self) -> Progress:

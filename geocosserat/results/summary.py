@@ -115,7 +115,7 @@ def _place(end: Mapping[str, Any]) -> str:
 
 def _ledger(terms: Mapping[str, float | None]) -> str:
     return (f"stored {_digits(terms['stored'], 6)} + dissipated {_digits(terms['dissipated'], 6)} "
-            f"= work {_digits(terms['work'], 6)}, but for {_digits(terms['residual'], 2)} of the largest")
+            f"= work {_digits(terms['work'], 6)}; residual {_digits(terms['residual'], 2)}")
 
 
 def _time(fields: Mapping[str, Any]) -> str:

@@ -171,7 +171,7 @@ REFUSALS: list[tuple[str, Any, str]] = [
      "effects.0.force.0: expected steps at known places, .* must not move"),
     ("effects.0.torque", 1, "effects.0.torque: expected one of kind, force, found an unknown key"),
     ("effects.0", {"kind": "follower", "force": [0, "u*t"]},
-     "effects.0.kind: expected weight, found 'follower', which is not available in this version; remove this effect"),
+     "effects.0.kind: expected weight, found 'follower', which is not available in this version; remove"),
     ("effects.0", {"kind": "follower"},
      r"effects.0.force: expected a list of 2 \(f1, f2\), found nothing"),
     ("effects.0", {"kind": "couple", "torque": "u*t"},

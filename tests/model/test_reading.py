@@ -16,7 +16,7 @@ from geocosserat.model.reading import read
 from geocosserat.model.scene import load_scene
 from geocosserat.model.toml_text import to_toml
 
-QUICKLY = 3.0  # seconds, generous for a busy machine; these take milliseconds
+QUICKLY = 3.0  # seconds of this process, generous for a slow machine
 SCENE = """\
 title = "a scene"
 [rod]
@@ -72,16 +72,16 @@ def test_files_of_other_editors_are_read(tmp_path: Path, content: str) -> None:
         (b"\xff" * 1_000_001, "expected at most 1 MB, found more"),
         (b"\xc3\xa9\n" * 400_000, "expected at most 1 MB, found more"),
         (
-            b"a = 1 # " + b"x" * 20_000 + b"\n",
-            "line 1: expected lines of at most 20000 characters, found one of 20008",
+            b"a = 1 # " + b"x" * 12_000 + b"\n",
+            "line 1: expected lines of at most 12000 characters, found one of 12008",
         ),
         (b"a = [\n" + b"[\n" * 100_000, "expected (at most 8 levels|valid TOML)"),
         (
-            b"a = " + b"[" * 9000 + b"]" * 9000 + b"\n",
+            b"a = " + b"[" * 5900 + b"]" * 5900 + b"\n",
             "expected at most 8 levels of nesting, found more; write it flatter",
         ),
-        (b"a." * 9000 + b"a = 1\n", "expected at most 8 levels of nesting"),
-        (b"[" + b"a." * 9000 + b"a]\n", "expected at most 8 levels of nesting"),
+        (b"a." * 5900 + b"a = 1\n", "expected at most 8 levels of nesting"),
+        (b"[" + b"a." * 5900 + b"a]\n", "expected at most 8 levels of nesting"),
         (b"[a]\n" * 200_000, "expected valid TOML, found Cannot declare"),
         (b"\n".join(b"k%d = 1" % i for i in range(60_000)), "k0: expected one of title"),
         (
@@ -93,8 +93,8 @@ def test_files_of_other_editors_are_read(tmp_path: Path, content: str) -> None:
             b"[parameters]\n" + b"".join(b"k%d = 1\n" % i for i in range(60_000)),
             "at most 1000 parameters, found 60000",
         ),
-        (b"[rod]\n'" + b"k" * 15_000 + b"' = 1\n[run]\n", "found an unknown key"),
-        (b"[rod]\nmotion = '" + b"k" * 15_000 + b"'\n[run]\n", r"rod.motion: .* found 'k{57}\.\.\.'"),
+        (b"[rod]\n'" + b"k" * 11_000 + b"' = 1\n[run]\n", "found an unknown key"),
+        (b"[rod]\nmotion = '" + b"k" * 11_000 + b"'\n[run]\n", r"rod.motion: .* found 'k{57}\.\.\.'"),
         (b'"a\\u001b[31m\\nb" = 1\n', r"'a\\x1b\[31m\\nb': expected one of"),
     ],
     ids=range(25),
@@ -103,10 +103,10 @@ def test_a_file_that_is_no_scene_is_refused_at_once(tmp_path: Path, content: byt
     """Wrong encoding, wrong syntax, wrong size, made to take forever: one short message, quickly."""
     file = tmp_path / "scene.toml"
     file.write_bytes(content)
-    begin = time.perf_counter()
+    begin = time.process_time()
     with pytest.raises(InputError, match=wording) as caught:
         load_scene(file)
-    assert time.perf_counter() - begin < QUICKLY
+    assert time.process_time() - begin < QUICKLY
     assert len(str(caught.value)) < 800
     assert str(caught.value).isprintable()
 

@@ -173,7 +173,8 @@ NOT_FINITE = [float("nan"), float("inf"), "9**9**9**9", "1/0", "log(-1)", "exp(1
 def test_no_number_may_be_infinite_or_nan(path: str, value: Any) -> None:
     """Wherever a number stands, written or computed, it must be finite."""
     scene = changed(changed(PLANAR, "start.position", [0, 0]), path, value)
-    with pytest.raises(InputError, match=r"expected a (finite|positive) number, found .*(nan|inf)"):
+    wording = rf"^scene: {path.replace('.', '[.]')}: expected a (finite|positive) number, found .*(nan|inf)"
+    with pytest.raises(InputError, match=wording):
         load_scene(scene)
 
 

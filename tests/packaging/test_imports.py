@@ -129,9 +129,7 @@ def _own() -> list[Import]:
 
 def _libraries() -> list[Import]:
     return [
-        found
-        for found in _imports()
-        if _top(found.name) not in (*sys.stdlib_module_names, "geocosserat", "__future__")
+        found for found in _imports() if _top(found.name) not in (*sys.stdlib_module_names, "geocosserat", "__future__")
     ]
 
 

@@ -224,6 +224,9 @@ def test_a_scene_may_quote_the_checksum_of_another_file(tmp_path: Path) -> None:
     """In a comment, say, about where its numbers came from."""
     quoted = rolling(scene=f"# from {seal.MARK}{'ab' * 32}\n")
     assert load(save(quoted, tmp_path / "solution.nc")) == quoted
+    before, after = seal.seal((quoted.scene + seal.BLANK).encode()), seal.seal((seal.BLANK + quoted.scene).encode())
+    assert seal.intact(before)
+    assert seal.intact(after)
 
 
 def test_the_seal_needs_its_one_blank() -> None:

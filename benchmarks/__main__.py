@@ -1,0 +1,59 @@
+"""Everything that is measured, one after the other, into benchmarks/RESULTS.md: python -m benchmarks."""
+
+import os
+import platform
+from importlib.metadata import version
+from pathlib import Path
+
+from benchmarks import bindings, convergence, kernel_cost, linear_solvers, startup
+from geocosserat.kernel.compile import FLAGS, compiler
+
+LIBRARIES = ("numpy", "scipy", "sympy", "scikit-sundae", "cffi", "matplotlib")
+
+
+def _machine() -> str:
+    try:
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+        name = next(line.split(":")[1].strip() for line in lines if line.startswith("model name"))
+    except (OSError, StopIteration):
+        name = platform.processor()
+    versions = ", ".join(f"{library} {version(library)}" for library in LIBRARIES)
+    return (
+        f"{name}, {os.cpu_count()} cores, {platform.system()}; Python {platform.python_version()}, {versions}; "
+        f"{Path(compiler() or 'no compiler').name} {' '.join(FLAGS)}"
+    )
+
+
+def _sections() -> list[tuple[str, str, str]]:
+    return [
+        (
+            "A rate of a generated kernel, beside one written by hand",
+            "kernel_cost",
+            kernel_cost.table(kernel_cost.measure()),
+        ),
+        ("Bindings", "bindings", bindings.table()),
+        ("Linear solvers", "linear_solvers", linear_solvers.table()),
+        ("Whole runs from the shell, in seconds (minimum, median)", "startup", startup.table()),
+        ("Error of the tip, relative to the length", "convergence", convergence.tables()),
+    ]
+
+
+def main() -> None:
+    """Runs all and writes the page."""
+    parts = [
+        "# Measured",
+        "",
+        f"On {_machine()}.",
+        "",
+        "`make bench` measures all of it again. Shared machines are noisy:",
+    ]
+    parts += ["trust ratios and minima rather than single times.", ""]
+    for title, module, table in _sections():
+        parts += [f"## {title}", "", f"`python -m benchmarks.{module}`", "", table]
+    page = "\n".join(parts)
+    (Path(__file__).parent / "RESULTS.md").write_text(page)
+    print(page)
+
+
+if __name__ == "__main__":
+    main()

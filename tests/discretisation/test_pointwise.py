@@ -1,0 +1,127 @@
+"""The pointwise expressions: compatibility, balance and carried frames, exactly, at random rational places."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+import sympy as sp
+from numpy.typing import NDArray
+
+from geocosserat.discretisation.pointwise import Pointwise, pointwise
+from geocosserat.discretisation.structure import structure_of
+from tests.discretisation.rods import MOTIONS, NAMES, scene
+
+Symbols = NDArray[np.object_]
+
+
+@cache
+def expressions(name: str) -> Pointwise:
+    return pointwise(structure_of(scene(name).model))
+
+
+def symbols(stem: str, d: int) -> Symbols:
+    return np.array([sp.Symbol(f"{stem}_{i + 1}") for i in range(d)], dtype=object)
+
+
+def matrix(named: dict[str, sp.Expr] | object, stem: str, rows: int, columns: int) -> Symbols:
+    """The matrix of the entries called stem_i_j; those left out are zero."""
+    assert isinstance(named, dict)
+    entries = [[named.get(f"{stem}_{i + 1}_{j + 1}", sp.Integer(0)) for j in range(columns)] for i in range(rows)]
+    return np.array(entries, dtype=object)
+
+
+def zero(*expressions: Symbols) -> bool:
+    """Whether all entries vanish identically."""
+    return all(sp.simplify(sp.expand(e)) == 0 for array in expressions for e in np.ravel(array))
+
+
+@pytest.mark.parametrize("motion", MOTIONS)
+def test_the_strain_rate_is_the_slope_plus_the_bracket_of_turn_and_twist(motion: str) -> None:
+    """Compatibility, as matrices: hat(rate) = hat(slope) + [hat(E), hat(W)]."""
+    p = expressions(f"{motion} plain")
+    group, d = p.group, p.group.dimension
+    E, W, U = np.array(p.turn, dtype=object), symbols("value", d), symbols("slope", d)
+    hatted = group.hat(E) @ group.hat(W) - group.hat(W) @ group.hat(E)
+    rate = np.array([p.strain_rate[f"rate_{i + 1}"] for i in range(d)], dtype=object)
+    assert zero(group.hat(rate) - group.hat(U) - hatted)
+
+
+@pytest.mark.parametrize("motion", MOTIONS)
+def test_the_pull_does_on_a_twist_the_work_that_the_stress_does_on_its_bracket(motion: str) -> None:
+    """<pull, W> = <S, [E, W]>: the reason that the scheme can add no work."""
+    p = expressions(f"{motion} plain")
+    d = p.group.dimension
+    E, W, S = np.array(p.turn, dtype=object), symbols("value", d), np.array([sp.Symbol(n) for n in p.group.stress])
+    pull = np.array([p.pull[f"pull_{i + 1}"] for i in range(d)], dtype=object)
+    assert zero(pull @ W - S @ p.group.bracket(E, W))
+
+
+@pytest.mark.parametrize("motion", MOTIONS)
+def test_bracket_and_advection_are_the_two_derivatives_of_the_strain_rate(motion: str) -> None:
+    """With respect to the value of the twist, and to the turn."""
+    p = expressions(f"{motion} plain")
+    d = p.group.dimension
+    rates = [p.strain_rate[f"rate_{i + 1}"] for i in range(d)]
+    by_value = [[e.diff(x) for x in symbols("value", d)] for e in rates]
+    by_turn = [[e.diff(x) for x in p.turn] for e in rates]
+    assert zero(matrix(p.bracket, "ad", d, d) - np.array(by_value))
+    assert zero(matrix(p.advection, "advection", d, d) - np.array(by_turn))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_stress_is_the_derivative_of_the_energy(name: str) -> None:
+    """Hyperelastic, whatever the stiffness and the reference."""
+    p = expressions(name)
+    energy = p.energy["energy"].subs({sp.Symbol(s): e for s, e in p.stress.items()})
+    difference = [energy.diff(x) - e for x, e in zip(p.turn, p.stress.values(), strict=True)]
+    assert zero(np.array(difference))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_velocity_is_symmetric_in_its_drive(name: str) -> None:
+    """Onsager: the mobility is a symmetric matrix."""
+    p = expressions(name)
+    drive = symbols("drive", p.group.dimension)
+    mobility = np.array([[e.diff(x) for x in drive] for e in p.velocity.values()])
+    assert zero(mobility - mobility.T)
+    assert zero(np.array([e for e in p.velocity.values()]) - mobility @ drive)
+
+
+@pytest.mark.parametrize("motion", MOTIONS)
+def test_a_carried_frame_follows_its_twist(motion: str) -> None:
+    """phi_dot = phi V for the matrix of the carried pose, and spin is the rotation that a change of the pose makes."""
+    p = expressions(f"{motion} plain")
+    group = p.group
+    rng = np.random.default_rng(4)
+    twist = [sp.Rational(int(n), 7) for n in rng.integers(-20, 20, group.dimension)]
+    V = np.array(twist, dtype=object)
+    pose = np.array(p.pose, dtype=object)
+    if motion == "planar":
+        c, s = sp.cos(pose[2]), sp.sin(pose[2])
+        R = np.array([[c, -s], [s, c]], dtype=object)
+    else:
+        a, b, c, d = pose[3:]
+        R = np.array(sp.Quaternion(a, b, c, d).to_rotation_matrix().tolist(), dtype=object)
+    phi = np.zeros((group.size, group.size), dtype=object)
+    phi[0, 0], phi[1:, 0], phi[1:, 1:] = sp.Integer(1), pose[: group.space], R
+    values = dict(zip(p.pose, (sp.Rational(int(n), 5) for n in rng.integers(1, 20, len(pose))), strict=True))
+    moving = dict(zip((sp.Symbol(n) for n in group.twist), twist, strict=True))
+    rates = np.array([e.subs(moving) for e in p.carry.values()], dtype=object)
+
+    def number(array: Symbols) -> Symbols:
+        return np.array([sp.sympify(e).subs(values) for e in array.ravel()], dtype=object).reshape(array.shape)
+
+    def along(direction: Symbols) -> Symbols:
+        """The derivative of phi in a direction of the pose."""
+        out = np.zeros_like(phi)
+        for index, e in np.ndenumerate(phi):
+            out[index] = sum(sp.diff(e, x) * dx for x, dx in zip(p.pose, direction, strict=True))
+        return out
+
+    assert zero(number(along(rates)) - number(phi) @ group.hat(V))
+    spin = matrix(p.spin, "spin", group.rotations, len(pose))
+    for j, unit in enumerate(np.eye(len(pose), dtype=int)):
+        turning = group.vee(group.inverse(number(phi)) @ number(along(unit.astype(object))))
+        assert zero(turning[group.translations :] - number(spin[:, j]))
