@@ -1,6 +1,6 @@
 """How long a whole run takes from the shell: cold (derive, compile, solve) and warm (everything cached), in seconds.
 
-Each is a fresh process. Cold runs start with an empty cache; the kernel of the first scene is shipped in `generated/` and is only
+Each is a fresh process. Cold runs start with an empty cache; the kernel of the first scene is shipped and only
 compiled, that of the second one is derived too.
 """
 

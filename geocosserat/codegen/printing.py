@@ -1,6 +1,7 @@
 """Tapes and the user's expressions as lines of C or numpy."""
 
 from collections.abc import Callable
+from math import copysign
 
 import sympy as sp
 from sympy.printing.c import C99CodePrinter
@@ -11,7 +12,15 @@ from geocosserat.model.expressions import Binary, Call, Expression, Negate, Numb
 
 
 class _C(C99CodePrinter):  # type: ignore[misc]
-    """C99 with small whole powers written as products."""
+    """C99 with small whole powers written as products, and constants as numbers: strict C99 has no M_PI."""
+
+    def __init__(self) -> None:
+        super().__init__({"math_macros": {}})
+
+    def _print_NumberSymbol(self, expr: sp.NumberSymbol) -> str:
+        return repr(float(expr))
+
+    _print_Pi = _print_Exp1 = _print_NumberSymbol
 
     def _print_Pow(self, expr: sp.Pow) -> str:
         base, power = expr.as_base_exp()
@@ -60,7 +69,8 @@ def print_expression(e: Expression, language: str, name: Callable[[str], str]) -
     def go(node: Expression) -> str:
         match node:
             case Number(value):
-                return f"({value!r})" if value < 0 else repr(float(value))
+                # a sign gets parentheses, that of -0.0 too: in C "--" would count down
+                return f"({value!r})" if copysign(1.0, value) < 0 else repr(float(value))
             case Symbol(symbol):
                 return name(symbol)
             case Negate(operand):

@@ -33,22 +33,29 @@ def smooth(solution: Solution, values: Array, pieces: int = 200) -> tuple[Array,
     return places.ravel(), drawn.reshape(len(values), -1, values.shape[2])
 
 
+def way(solution: Solution) -> Array:
+    """Distance travelled until each frame, (T,), a length: root mean square over the nodes, added up.
+
+    Steps to or from a position that is not finite count as none.
+    """
+    moved = np.diff(solution.position, axis=0)
+    steps = np.sqrt(np.mean(np.sum(moved**2, axis=2), axis=1))
+    return np.concatenate(([0.0], np.cumsum(np.where(np.isfinite(steps), steps, 0.0))))
+
+
 def moments(solution: Solution, count: int) -> NDArray[np.intp]:
     """Indices of at most `count` frames, first and last among them, about even along the way travelled.
 
     Evenly spaced in time, the shapes of a rod that relaxes would lie on top of each other at its end.
     """
-    last = len(solution.time) - 1
-    moved = np.diff(solution.position, axis=0)
-    steps = np.nan_to_num(np.sqrt(np.mean(np.sum(moved**2, axis=2), axis=1)), posinf=0.0)
-    way = np.concatenate(([0.0], np.cumsum(steps)))
-    spacing = way[-1] / max(count - 1, 1)
+    travelled, last = way(solution), len(solution.time) - 1
+    spacing = travelled[-1] / max(count - 1, 1)
     chosen = [0]
     for frame in range(1, last + 1):
-        if way[frame] - way[chosen[-1]] >= spacing * (1 - 1e-9) and spacing > 0:
+        if travelled[frame] - travelled[chosen[-1]] >= spacing * (1 - 1e-9) and spacing > 0:
             chosen.append(frame)
     if chosen[-1] != last:
         # the last shape is always shown: instead of its neighbour when that is close, or one too many
-        close = way[last] - way[chosen[-1]] < spacing / 2 or len(chosen) == count
+        close = travelled[last] - travelled[chosen[-1]] < spacing / 2 or len(chosen) == count
         chosen = [*(chosen[:-1] if close and len(chosen) > 1 else chosen), last]
     return np.array(chosen, dtype=np.intp)

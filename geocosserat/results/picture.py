@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 
 from geocosserat.results import style
 from geocosserat.results.atomic import write_bytes
-from geocosserat.results.curves import moments
+from geocosserat.results.curves import moments, way
 from geocosserat.results.errors import FileError
 from geocosserat.results.panels import draw_ledger, draw_turn, liveliest
 from geocosserat.results.shapes import draw_planar, draw_spatial
@@ -55,15 +55,16 @@ def figure(solution: Solution) -> Figure:
 def _draw(solution: Solution) -> Figure:
     result = Figure(figsize=style.SIZE, dpi=style.DPI)
     FigureCanvasAgg(result)
-    colours = style.time_colours(solution.time)
+    power = style.time_power(solution.time, way(solution))
+    colours = style.time_colours(solution.time, power)
     planar = solution.motion == "planar"
     shown = liveliest(solution, 1 if planar else 2)
     shapes, curves = moments(solution, _SHAPES[solution.motion]), moments(solution, _CURVES)
     if planar:
         draw_planar(result.add_axes((0.065, 0.11, 0.48, 0.77)), solution, shapes, colours)
     else:
-        draw_spatial(result.add_axes((0.01, 0.0, 0.54, 0.92), projection="3d"), solution, shapes, colours)
-    _colour_bar(result, colours)
+        draw_spatial(result.add_axes((0.01, 0.02, 0.54, 0.9), projection="3d"), solution, shapes, colours)
+    _colour_bar(result, colours, power)
     right = _stack(result, 1 + len(shown))
     draw_ledger(right[0], solution)
     for axes, component in zip(right[1:], shown, strict=True):
@@ -79,8 +80,12 @@ def _draw(solution: Solution) -> Figure:
     return result
 
 
-def _colour_bar(result: Figure, colours: ScalarMappable) -> None:
+def _colour_bar(result: Figure, colours: ScalarMappable, power: float) -> None:
     bar = result.colorbar(colours, cax=result.add_axes((0.57, 0.2, 0.01, 0.6)))
+    if power < 1:
+        ticks = style.time_ticks(*bar.ax.get_ylim(), power)
+        bar.set_ticks(ticks, labels=[f"{time:.3g}" for time in ticks])
+        bar.ax.minorticks_off()
     bar.outline.set_visible(False)
     bar.ax.set_title("$t$", pad=6)
 

@@ -15,7 +15,7 @@ from geocosserat.results.curves import smooth
 from geocosserat.results.solution import Array, Solution
 
 _THIN, _THICK = 0.9, 2.6
-_FILLED = np.array([0.84, 0.84])  # of the axes, by the box in space: the rest is for numbers and names
+_FILLED = np.array([0.84, 0.78])  # of the axes, by the box in space: the rest is for numbers and names
 
 
 def draw_planar(axes: Axes, solution: Solution, frames: NDArray[np.intp], colours: ScalarMappable) -> None:

@@ -8,7 +8,7 @@ import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
-from matplotlib.colors import ListedColormap, Normalize
+from matplotlib.colors import ListedColormap, PowerNorm
 from matplotlib.ticker import ScalarFormatter
 
 from geocosserat.results.solution import Array
@@ -46,11 +46,32 @@ RC: Any = {  # matplotlib's own type of this is a list of all its keys
 }
 
 
-def time_colours(time: Array) -> ScalarMappable:
-    """Viridis over the run, without its palest part, which does not print on white."""
+def time_power(time: Array, travelled: Array) -> float:
+    """The power of the time that colours follow, at most 1: it gives each half of the way travelled half of them.
+
+    Both arguments are (T,). Most rods move fast at first and then hardly any more; evenly coloured in time, nearly
+    all shapes would have the first colour.
+    """
+    if time[-1] <= time[0] or travelled[-1] <= 0:
+        return 1.0
+    half = (np.interp(travelled[-1] / 2, travelled, time) - time[0]) / (time[-1] - time[0])
+    power = float(np.log(0.5) / np.log(np.clip(half, 1e-6, 0.5)))
+    return 1.0 if power > 0.75 else max(power, 0.25)
+
+
+def time_colours(time: Array, power: float) -> ScalarMappable:
+    """Viridis over the run, following a power of the time, without its palest part, which is lost on white."""
     shades = matplotlib.colormaps["viridis"](np.linspace(0.0, 0.9, 256))
-    end = float(time[-1]) if time[-1] > time[0] else float(time[0]) + 1.0
-    return ScalarMappable(Normalize(float(time[0]), end), ListedColormap(shades))
+    start = float(time[0])
+    end = float(time[-1]) if time[-1] > start else start + 1.0
+    return ScalarMappable(PowerNorm(power, start, end), ListedColormap(shades))
+
+
+def time_ticks(start: float, end: float, power: float) -> list[float]:
+    """Times of one digit, about even where colours follow a power of the time, and the two ends."""
+    even = (end - start) * np.linspace(0.0, 1.0, 6)[1:-1] ** (1 / power)
+    digit = 10.0 ** np.floor(np.log10(even))
+    return [start, *(start + np.unique(np.round(even / digit) * digit)), end]
 
 
 _LETTERS = {"Pi": r"\Pi"}

@@ -97,15 +97,16 @@ def test_what_is_infinite_or_not_real_is_refused(text: str) -> None:
         "(2**1000)**1000",
         "1e300**300.5",
         "exp(1e12*log(2))",
+        "exp(2000*log(2))",
         "exp(-1e12*log(3))",
     ],
 )
 def test_a_number_out_of_range_is_refused_at_once(text: str) -> None:
     """Exact arithmetic would compute it to its last digit."""
-    started = time.perf_counter()
+    started = time.process_time()
     with pytest.raises(ExpressionError, match=r"range of doubles, found .*smaller exponent"):
         to_sympy(parse(text, NAMES))
-    assert time.perf_counter() - started < 1.0
+    assert time.process_time() - started < 1.0
 
 
 @pytest.mark.parametrize(
@@ -113,6 +114,6 @@ def test_a_number_out_of_range_is_refused_at_once(text: str) -> None:
 )
 def test_large_powers_of_names_are_left_alone(text: str) -> None:
     """They are no trouble unless multiplied out, and nothing does that."""
-    started = time.perf_counter()
+    started = time.process_time()
     assert to_sympy(parse(text, NAMES)) != 0
-    assert time.perf_counter() - started < 1.0
+    assert time.process_time() - started < 1.0

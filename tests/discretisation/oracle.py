@@ -337,7 +337,7 @@ class Rod:
             total = zeros(3, self.p + 1)
             for effect in self.model.effects:
                 for k, u in enumerate(places):
-                    total[: self.model.group.space, k] += self.vector(effect.force, {"u": u, "t": t})
+                    total[: self.model.group.translations, k] += self.vector(effect.force, {"u": u, "t": t})
             local.append(total * self.table.masses)
         return self.gather(local)
 
@@ -355,8 +355,8 @@ class Rod:
                 total[3:, n] += R.T @ world[3:, n]
         return total
 
-    def rate(self, t: float, y: Array) -> Array:
-        """dy/dt with 40 digits, of a state of doubles or of 40-digit numbers, in the layout of the kernels."""
+    def move(self, t: float, y: Array) -> tuple[Array, Array, Array]:
+        """Turn (6, Q), applied wrenches (6, N) in the moving frame, and the twist (6, N) that they and the stress drive."""
         y = y if y.dtype == object else numbers(y)
         d, Q = self.d, self.Q
         E, pose = y[: d * Q].reshape(d, Q), y[d * Q : d * Q + self.carried]
@@ -367,11 +367,17 @@ class Rod:
         for node, end in ((0, self.model.left), (self.N - 1, self.model.right)):
             if end.kind == "clamped":
                 V[:, node] = 0
-        lost = sum(self.mass[n] * (V[:, n] @ self.friction[n] @ V[:, n]) for n in range(self.N))
-        gained = (applied[self.kept] * V).sum()
-        V6 = self.six(V)
-        moved = self.pose_rate(pose, V6[:, 0])
-        return np.concatenate([self.strain_rate(E6, V6)[self.kept].ravel(), moved, np.array([lost, gained])])
+        return E6, applied, self.six(V)
+
+    def rate(self, t: float, y: Array) -> Array:
+        """dy/dt with 40 digits, of a state of doubles or of 40-digit numbers, in the layout of the kernels."""
+        y = y if y.dtype == object else numbers(y)
+        E, applied, V = self.move(t, y)
+        few, d, Q = V[self.kept], self.d, self.Q
+        lost = sum(self.mass[n] * (few[:, n] @ G @ few[:, n]) for n, G in enumerate(self.friction))
+        gained = (applied * V).sum()
+        moved = self.pose_rate(y[d * Q : d * Q + self.carried], V[:, 0])
+        return np.concatenate([self.strain_rate(E, V)[self.kept].ravel(), moved, np.array([lost, gained])])
 
     def pose_rate(self, pose: Array, V: Array) -> Array:
         """How the left end's pose, relative to its start, follows its twist (6,)."""

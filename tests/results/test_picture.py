@@ -15,7 +15,7 @@ from matplotlib.image import imread
 from matplotlib.text import Text
 
 from geocosserat.results import style
-from geocosserat.results.curves import moments, smooth
+from geocosserat.results.curves import moments, smooth, way
 from geocosserat.results.errors import FileError
 from geocosserat.results.panels import liveliest
 from geocosserat.results.picture import figure, picture
@@ -100,10 +100,10 @@ def test_a_planar_rod_is_drawn_to_scale_over_time(make) -> None:
     rod_axes = drawn.axes[0]
     assert rod_axes.get_aspect() == 1.0
     frames = moments(solution, 24)
-    way, *shapes = _curves(rod_axes)
-    np.testing.assert_array_equal(way.get_xydata(), solution.position[:, -1])
+    of_the_tip, *shapes = _curves(rod_axes)
+    np.testing.assert_array_equal(of_the_tip.get_xydata(), solution.position[:, -1])
     assert len(shapes) == len(frames) > 10
-    colours = style.time_colours(solution.time)
+    colours = style.time_colours(solution.time, style.time_power(solution.time, way(solution)))
     for frame, shape in zip(frames, shapes, strict=True):
         assert shape.get_color() == colours.to_rgba(solution.time[frame])
         np.testing.assert_allclose(shape.get_xydata()[[0, -1]], solution.position[frame][[0, -1]], atol=1e-13)
@@ -173,7 +173,7 @@ def test_round_off_does_not_fill_a_panel() -> None:
 
 def test_the_colours_of_time_print_in_grey() -> None:
     """Perceptually even: lightness rises steadily with time, and the palest still shows on white."""
-    colours = style.time_colours(np.array([0.0, 3.0]))
+    colours = style.time_colours(np.array([0.0, 3.0]), 1.0)
     rgb = np.asarray(colours.to_rgba(np.linspace(0.0, 3.0, 64)))[:, :3]
     linear = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
     lightness = 116 * np.cbrt(linear @ [0.2126, 0.7152, 0.0722]) - 16
@@ -183,18 +183,40 @@ def test_the_colours_of_time_print_in_grey() -> None:
     assert lightness[-1] < 85
 
 
-def test_the_colour_bar_spans_the_run() -> None:
-    """From the first to the last time."""
-    bar = figure(rolling(until=0.5)).axes[1]
-    assert bar.get_ylim() == (0.0, 0.5)
+@pytest.mark.parametrize("make", [rolling, unrolling])
+def test_the_colour_bar_spans_the_run(make) -> None:
+    """From the first to the last time, with numbers that tell them."""
+    bar = figure(make(until=1.5)).axes[1]
+    assert bar.get_ylim() == (0.0, 1.5)
     assert bar.get_title() == "$t$"
+    ticks = [tick for tick in bar.get_yticks() if 0.0 <= tick <= 1.5]
+    assert ticks[0] == 0.0
+    assert len(ticks) >= 5
+    assert np.all(np.diff(ticks) > 0)
+
+
+def test_colours_are_shared_out_along_the_way() -> None:
+    """Evenly in time where the rod moves evenly; where it slows down, half the way gets half the colours."""
+    time = np.linspace(3.0, 5.0, 1001)
+    assert style.time_power(time, time - 3.0) == 1.0
+    travelled = 1 - np.exp(-4 * (time - 3.0))
+    power = style.time_power(time, travelled)
+    shade = style.time_colours(time, power).norm(time)
+    assert np.interp(travelled[-1] / 2, travelled, shade) == pytest.approx(0.5, abs=1e-3)
+    assert style.time_power(time, 0 * time) == 1.0
+    assert 0.25 <= style.time_power(time, 1 - np.exp(-1e9 * (time - 3.0))) < 0.3
+    assert style.time_power(time, np.exp(4 * time)) == 1.0
+    for one_time in style.time_ticks(0.0, 0.05, 0.4)[1:-1]:
+        assert float(f"{one_time:.0e}") == pytest.approx(one_time)
 
 
 def test_a_power_of_ten_stands_in_the_label() -> None:
     """Beside the axis it would meet the legend."""
     drawn = figure(CASES["tiny"]())
     assert drawn.axes[2].get_xlabel() == "time $t$ ($\\times\\mathdefault{10^{\N{MINUS SIGN}9}}\\mathdefault{}$)"
-    assert all(not axis.get_offset_text().get_visible() for axes in drawn.axes for axis in (axes.xaxis, axes.yaxis))
+    drawn.canvas.draw()
+    offsets = [axis.get_offset_text() for axes in drawn.axes for axis in (axes.xaxis, axes.yaxis)]
+    assert [text.get_text() for text in offsets if text.get_visible() and text.get_text()] == []
 
 
 @pytest.mark.parametrize("suffix", [".png", ".svg", ".pdf", ".PNG"])

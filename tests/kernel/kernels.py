@@ -1,0 +1,114 @@
+"""Kernels of the cast, each built once a session, and the oracle beside them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import contextmanager
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from geocosserat.conductor import kernel_text
+from geocosserat.discretisation.semidiscrete import SemiDiscrete
+from geocosserat.kernel.compile import compile_c, compiler
+from geocosserat.kernel.load import load
+from geocosserat.kernel.native import NativeRod
+from geocosserat.kernel.pure import NumpyRod
+from tests.discretisation import oracle
+from tests.discretisation.rods import NAMES, SIZES, random_state, rod, scene
+
+Array = NDArray[np.float64]
+T = 0.37
+"""The instant at which kernels are compared."""
+
+
+class Case(NamedTuple):
+    """A rod of the cast on a mesh, and the language of its kernel."""
+
+    name: str
+    elements: int
+    degree: int
+    backend: str
+
+    def __str__(self) -> str:
+        return f"{self.name}, {self.elements} of degree {self.degree}, {self.backend}"
+
+
+def cases(backends: Iterable[str] = ("numpy", "c"), names: Iterable[str] = NAMES) -> list[Case]:
+    """Every rod on every mesh in numpy; in C every rod, and those with the most in them on every mesh."""
+    rich = ("everything", "hung", "held")
+    numpy = [Case(name, *size, "numpy") for name in names for size in SIZES]
+    c = [Case(name, *size, "c") for name in names for size in SIZES if name.split()[1] in rich or size == SIZES[1]]
+    return [*(numpy if "numpy" in backends else []), *(c if "c" in backends else [])]
+
+
+_libraries: dict[tuple[str, int], Future[Path]] = {}
+
+
+@contextmanager
+def workshop(wanted: Iterable[Case]) -> Iterator[None]:
+    """Compiles the C kernels of these cases ahead, two at a time."""
+    with ThreadPoolExecutor(2) as pool:
+        for case in wanted:
+            if compiler() is not None and case.backend == "c" and (case.name, case.degree) not in _libraries:
+                text = kernel_text(rod(*case[:3]).structure)
+                _libraries[case.name, case.degree] = pool.submit(compile_c, text.c, case.degree)
+        try:
+            yield
+        finally:
+            pool.shutdown(cancel_futures=True)
+
+
+@cache
+def kernel(case: Case) -> NativeRod | NumpyRod:
+    """The kernel of a case; the test is skipped if it is in C and there is no compiler."""
+    if case.backend == "c":
+        if compiler() is None:
+            pytest.skip("no C compiler on the path, or CC is set to none")
+        if (case.name, case.degree) in _libraries:
+            _libraries[case.name, case.degree].result()
+    r = rod(*case[:3])
+    return load(kernel_text(r.structure), r, case.backend)
+
+
+def like(case: Case, r: SemiDiscrete) -> NativeRod | NumpyRod:
+    """The kernel of a case given the numbers of another rod, which must have the same structure and degree."""
+    kernel(case)
+    return load(kernel_text(r.structure), r, case.backend)
+
+
+@cache
+def reference(name: str, elements: int, degree: int) -> oracle.Rod:
+    """The oracle of a rod on a mesh."""
+    r = rod(name, elements, degree)
+    return oracle.Rod(scene(name), r.mesh.edges, degree, r.base)
+
+
+def rate(case: Case, t: float, y: Array) -> Array:
+    out = np.full_like(y, np.nan)
+    kernel(case).rate(t, y, out)
+    return out
+
+
+def state(case: Case, seed: int = 1) -> Array:
+    return random_state(rod(*case[:3]), seed)
+
+
+@cache
+def reference_rate(name: str, elements: int, degree: int, t: float, seed: int) -> Array:
+    """The oracle's rate at a random state, rounded to doubles."""
+    y = random_state(rod(name, elements, degree), seed)
+    return oracle.floats(reference(name, elements, degree).rate(t, y))
+
+
+@cache
+def reference_derivative(name: str, elements: int, degree: int, seed: int) -> tuple[Array, Array]:
+    """A random direction, and the oracle's derivative of the rate in it at a random state."""
+    y = random_state(rod(name, elements, degree), seed)
+    direction = np.random.default_rng(100 + seed).normal(size=len(y))
+    return direction, oracle.floats(reference(name, elements, degree).derivative(T, y, direction))

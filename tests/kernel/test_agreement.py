@@ -1,0 +1,116 @@
+"""Every kernel computes the semi-discrete rod: C, numpy and an independent 40-digit evaluation agree."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from geocosserat.discretisation.semidiscrete import discretise
+from tests.discretisation import oracle
+from tests.discretisation.rods import SIZES, changed, random_state
+from tests.kernel.kernels import (
+    Case,
+    T,
+    cases,
+    kernel,
+    like,
+    rate,
+    reference,
+    reference_derivative,
+    reference_rate,
+    state,
+)
+
+ids = pytest.mark.parametrize("case", cases(), ids=str)
+
+
+@ids
+def test_the_rate_is_that_of_the_semi_discrete_rod(case: Case) -> None:
+    """At random states far from rest, also the rates of a carried pose and of both energies: round-off only."""
+    for seed in (1, 2):
+        found, wanted = rate(case, T, state(case, seed)), reference_rate(*case[:3], T, seed)
+        size = np.abs(wanted[:-2]).max()
+        np.testing.assert_allclose(found[:-2], wanted[:-2], rtol=0, atol=1e-13 * size)
+        np.testing.assert_allclose(found[-2:], wanted[-2:], rtol=1e-13, atol=1e-13)
+
+
+@ids
+def test_the_jacobian_is_the_exact_derivative_of_the_rate(case: Case) -> None:
+    """In random directions, row by row to round-off of the row; nothing depends on the energies, whose rows are zero."""
+    for seed in (1, 2):
+        y = state(case, seed)
+        direction, wanted = reference_derivative(*case[:3], seed)
+        J = kernel(case).jacobian(T, y)
+        rows = np.abs(J) @ np.abs(direction)
+        assert np.all(np.abs(J @ direction - wanted)[:-2] <= 1e-13 * rows[:-2])
+        np.testing.assert_array_equal(J[-2:], 0)
+        np.testing.assert_array_equal(J[:, -2:], 0)
+
+
+@ids
+def test_what_is_observed_is_what_moves_the_rod(case: Case) -> None:
+    """Twist, stress and stored energy of a state."""
+    y, exact = state(case, 3), reference(*case[:3])
+    twist, stress, energy = kernel(case).observe(T, y)
+    _, _, V = exact.move(T, y)
+    E = oracle.numbers(y[: exact.d * exact.Q].reshape(exact.d, exact.Q))
+    for found, wanted in ((twist, V[exact.kept]), (stress, exact.stress(E)), (energy, exact.energy(oracle.numbers(y)))):
+        wanted = oracle.floats(wanted)
+        np.testing.assert_allclose(found, wanted, rtol=0, atol=1e-13 * np.abs(wanted).max())
+
+
+@pytest.mark.parametrize("case", cases(("c",)), ids=str)
+def test_c_and_numpy_agree_to_round_off(case: Case) -> None:
+    """Rates and all entries of the Jacobian."""
+    y, other = state(case, 4), case._replace(backend="numpy")
+    for found, wanted in (
+        (rate(case, T, y), rate(other, T, y)),
+        (kernel(case).jacobian(T, y), kernel(other).jacobian(T, y)),
+    ):
+        np.testing.assert_allclose(found, wanted, rtol=0, atol=1e-13 * np.abs(wanted).max())
+
+
+@pytest.mark.parametrize(
+    "case", [c for c in cases() if c.name.endswith("everything") and (c.elements, c.degree) == SIZES[1]], ids=str
+)
+@pytest.mark.parametrize("t", [0.0, 0.2, 0.5, 7.0])
+def test_loads_follow_the_time_they_are_asked_at(case: Case, t: float) -> None:
+    """Also on the step at t = 0.2, where heaviside is a half, and before it."""
+    wanted = reference_rate(*case[:3], t, 5)
+    np.testing.assert_allclose(rate(case, t, state(case, 5)), wanted, rtol=1e-12, atol=1e-13 * np.abs(wanted).max())
+
+
+@pytest.mark.parametrize("case", [c for c in cases() if c.name.endswith(("everything", "held"))], ids=str)
+def test_a_call_leaves_nothing_behind(case: Case) -> None:
+    """Rates, Jacobians and solves of other states in between change no digit, and the state is not written to."""
+    k, y, other = kernel(case), state(case, 6), state(case, 7)
+    kept = y.copy()
+    first = rate(case, T, y)
+    J = k.jacobian(T, y)
+    rate(case, 2 * T, other)
+    k.observe(2 * T, other)
+    k.prepare(2 * T, other)
+    k.factor(0.3)
+    k.solve(other, np.empty_like(other))
+    k.jacobian(2 * T, other)
+    np.testing.assert_array_equal(rate(case, T, y), first)
+    np.testing.assert_array_equal(k.jacobian(T, y), J)
+    np.testing.assert_array_equal(y, kept)
+
+
+@pytest.mark.parametrize("backend", ["numpy", "c"])
+@pytest.mark.parametrize("motion", ["planar", "spatial"])
+def test_unequal_elements_are_no_special_case(motion: str, backend: str) -> None:
+    """A step off the middle: elements of two lengths, and a step of friction and weight on the node between them."""
+    name, degree = f"{motion} held", 2
+    uneven = changed(name, parameters={"middle": 0.4})
+    r = discretise(uneven, 3, degree)
+    assert len(set(np.round(r.mesh.half, 12))) == 2
+    k = like(Case(name, 4, degree, backend), r)
+    exact, y = oracle.Rod(uneven, r.mesh.edges, degree, r.base), random_state(r, 8)
+    wanted, out = oracle.floats(exact.rate(T, y)), np.empty_like(y)
+    k.rate(T, y, out)
+    np.testing.assert_allclose(out, wanted, rtol=1e-12, atol=1e-13 * np.abs(wanted).max())
+    direction = np.random.default_rng(9).normal(size=len(y))
+    slope, J = oracle.floats(exact.derivative(T, y, direction)), k.jacobian(T, y)
+    assert np.all(np.abs(J @ direction - slope)[:-2] <= 1e-13 * (np.abs(J) @ np.abs(direction))[:-2])

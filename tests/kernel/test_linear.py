@@ -1,0 +1,109 @@
+"""The linear algebra of a kernel: blocks, factors and solves are those of the exact Jacobian."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from geocosserat.conductor import kernel_text
+from geocosserat.discretisation.semidiscrete import discretise
+from geocosserat.kernel.load import load
+from geocosserat.kernel.native import NativeRod
+from tests.discretisation.rods import WORLD, random_state, rod, scene
+from tests.kernel.kernels import Case, T, cases, kernel, state
+
+Array = NDArray[np.float64]
+ids = pytest.mark.parametrize("case", cases(), ids=str)
+
+
+def turns(case: Case) -> int:
+    """How many state entries are components of the turn."""
+    r = rod(*case[:3])
+    return r.structure.group.dimension * len(r.mesh.u_point)
+
+
+def implicit(case: Case, J: Array, gamma: float) -> Array:
+    """1 - gamma dE/dt / dE, what the block solve is the inverse of; entries behind the turn are left as they are."""
+    matrix, m = np.eye(len(J)), turns(case)
+    matrix[:m, :m] -= gamma * J[:m, :m]
+    return matrix
+
+
+@ids
+@pytest.mark.parametrize("gamma", [1e-4, 0.3, -0.2, 50.0])
+def test_a_block_solve_is_the_dense_solve(case: Case, gamma: float) -> None:
+    """For any step, at a random state: to 1e-11, times the condition where that is bad."""
+    k, y, b = kernel(case), state(case, 1), state(case, 2)
+    matrix = implicit(case, k.jacobian(T, y), gamma)
+    out = np.full_like(b, np.nan)
+    k.prepare(T, y)
+    k.factor(gamma)
+    k.solve(b, out)
+    wanted = np.linalg.solve(matrix, b)
+    assert np.linalg.cond(matrix) < 1e5
+    np.testing.assert_allclose(out, wanted, rtol=0, atol=1e-11 * np.abs(wanted).max())
+    np.testing.assert_array_equal(out[turns(case) :], b[turns(case) :])
+
+
+@pytest.mark.parametrize("case", [c for c in cases() if c.name.endswith("everything")], ids=str)
+def test_factors_may_be_made_again_from_the_same_blocks_and_used_often(case: Case) -> None:
+    """prepare, then factor with one step after another, then solve with any number of right-hand sides."""
+    k, y = kernel(case), state(case, 1)
+    J = k.jacobian(T, y)
+    k.prepare(T, y)
+    for gamma in (0.1, 0.01, 0.1):
+        k.factor(gamma)
+        for seed in (3, 4):
+            b, out = state(case, seed), np.empty(len(y))
+            k.solve(b, out)
+            np.testing.assert_allclose(implicit(case, J, gamma) @ out, b, rtol=0, atol=1e-11)
+
+
+@pytest.mark.parametrize("case", [c for c in cases() if c.name not in WORLD], ids=str)
+def test_the_blocks_are_the_jacobian_where_nothing_sees_the_world(case: Case) -> None:
+    """Block-tridiagonal, entry q d + c of a block being component c at point q."""
+    k, y, r = kernel(case), state(case, 5), rod(*case[:3])
+    n, p, d, Q = case.elements, case.degree, r.structure.group.dimension, len(r.mesh.u_point)
+    matrix = np.zeros((n, p * d, n, p * d))
+    for shift, blocks in zip((-1, 0, 1), k.blocks(T, y), strict=True):
+        for e in range(max(0, -shift), n - max(0, shift)):
+            matrix[e, :, e + shift] = blocks[e]
+    # from (element, point, component) to the order of the state
+    order = np.arange(d * Q).reshape(d, n, p).transpose(1, 2, 0).ravel()
+    J = k.jacobian(T, y)[: d * Q, : d * Q][np.ix_(order, order)]
+    np.testing.assert_allclose(matrix.reshape(J.shape), J, rtol=0, atol=1e-14 * np.abs(J).max())
+
+
+@pytest.mark.parametrize("case", cases(("c",)), ids=str)
+def test_the_blocks_of_c_and_numpy_agree(case: Case) -> None:
+    """All three diagonals, with the rows of orientations where there are some."""
+    y = state(case, 6)
+    for found, wanted in zip(
+        kernel(case).blocks(T, y), kernel(case._replace(backend="numpy")).blocks(T, y), strict=True
+    ):
+        np.testing.assert_allclose(found, wanted, rtol=0, atol=1e-13 * (1 + np.abs(wanted).max()))
+
+
+def test_a_long_rod_is_solved_as_accurately_as_a_short_one() -> None:
+    """400 elements under a dead load: elimination from one end to the other loses nothing."""
+    r = discretise(scene("spatial hung"), 400, 1)
+    k = load(kernel_text(r.structure), r, "numpy")
+    y, b = random_state(r, 1, size=0.05), np.random.default_rng(2).normal(size=len(r.state))
+    J, out = k.jacobian(T, y), np.empty_like(b)
+    k.prepare(T, y)
+    k.factor(1e-2)
+    k.solve(b, out)
+    residual = out - 1e-2 * J @ out - b
+    assert np.abs(residual[:-2]).max() < 1e-11
+
+
+@pytest.mark.parametrize("case", [c for c in cases(("c",)) if c.name == "spatial everything"], ids=str)
+def test_a_system_without_a_solution_is_said_to_be_singular(case: Case) -> None:
+    """A state that is not a number leaves no pivot; the element is named."""
+    k, y = kernel(case), state(case, 1)
+    assert isinstance(k, NativeRod)
+    y[0] = np.nan
+    k.prepare(T, y)
+    with pytest.raises(np.linalg.LinAlgError, match="the linear system of element 0 is singular"):
+        k.factor(0.1)
