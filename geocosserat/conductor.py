@@ -16,7 +16,9 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
+from importlib import import_module
 from pathlib import Path
+from threading import Thread
 from typing import Any
 
 import numpy as np
@@ -373,6 +375,8 @@ def run(
         raise InputError("the folder of the interrupted run", "none", "name it with --out", key="--resume")
     if folder is not None:
         _claim(folder, overwrite or resume)
+        # plotting starts slowly, and an integration in C leaves the interpreter idle
+        Thread(target=import_module, args=["geocosserat.results.picture"], daemon=True).start()
     clock = _Clock()
     backend = choose_backend(read.run.backend, _tell)
     keeper = _Keeper(folder, _key(read), resume)
