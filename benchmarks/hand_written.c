@@ -8,6 +8,7 @@
 #error "compile with -DDEGREE=p"
 #endif
 #define P DEGREE
+#define INDEPENDENT _Pragma("GCC ivdep")
 
 typedef struct hand {
     int elements;
@@ -25,6 +26,7 @@ static void gather(const hand *h, size_t Q, const double *restrict s, const doub
 {
     const double half = h->half;
     f[0] = s[0] - half * p[0];
+    INDEPENDENT
     for (size_t n = 1; n < Q; ++n)
         f[n] = s[n] - s[n - 1] - half * (p[n] + p[n - 1]);
     f[Q] = -s[Q - 1] - half * p[Q - 1];
@@ -69,6 +71,7 @@ void hand_planar(const hand *h, const double *restrict y, double *restrict dy)
     const size_t Q = (size_t)h->elements * P, N = Q + 1;
     const double k1 = h->stiffness[0], k2 = h->stiffness[1], k3 = h->stiffness[2];
     double *restrict s = h->work, *restrict p = s + 3 * Q, *restrict v = p + 3 * Q;
+    INDEPENDENT
     for (size_t i = 0; i < Q; ++i) {
         const double h1 = y[i], h2 = y[Q + i], bend = y[2 * Q + i];
         const double f1 = k1 * (h1 - 1.0), f2 = k2 * h2;
@@ -84,12 +87,14 @@ void hand_planar(const hand *h, const double *restrict y, double *restrict dy)
         const double m = h->mobility[c];
         const double *restrict share = h->share;
         gather(h, Q, s + c * Q, p + c * Q, out);
+        INDEPENDENT
         for (size_t n = 0; n < N; ++n)
             out[n] *= m * share[n];
         out[0] = 0.0;
     }
 #if DEGREE == 1
     const double scale = 0.5 / h->half;
+    INDEPENDENT
     for (size_t i = 0; i < Q; ++i) {
         const double a1 = v[i], a2 = v[N + i], a3 = v[2 * N + i], b1 = v[i + 1], b2 = v[N + i + 1], b3 = v[2 * N + i + 1];
         const double w1 = 0.5 * (a1 + b1), w2 = 0.5 * (a2 + b2), w3 = 0.5 * (a3 + b3);
@@ -128,6 +133,7 @@ void hand_spatial(const hand *h, const double *restrict y, double *restrict dy)
     const double *k = h->stiffness;
     const double k1 = k[0], k2 = k[1], k3 = k[2], k4 = k[3], k5 = k[4], k6 = k[5];
     double *restrict s = h->work, *restrict p = s + 6 * Q, *restrict v = p + 6 * Q;
+    INDEPENDENT
     for (size_t i = 0; i < Q; ++i) {
         const double h1 = y[i], h2 = y[Q + i], h3 = y[2 * Q + i];
         const double p1 = y[3 * Q + i], p2 = y[4 * Q + i], p3 = y[5 * Q + i];
@@ -150,6 +156,7 @@ void hand_spatial(const hand *h, const double *restrict y, double *restrict dy)
         const double m = h->mobility[c];
         const double *restrict share = h->share;
         gather(h, Q, s + c * Q, p + c * Q, out);
+        INDEPENDENT
         for (size_t n = 0; n < N; ++n)
             out[n] *= m * share[n];
         out[0] = 0.0;
@@ -158,6 +165,7 @@ void hand_spatial(const hand *h, const double *restrict y, double *restrict dy)
     const double scale = 0.5 / h->half;
 #define SLOPE(c) scale * (v[c * N + i + 1] - v[c * N + i])
 #define VALUE(c) (0.5 * (v[c * N + i + 1] + v[c * N + i]))
+    INDEPENDENT
     for (size_t i = 0; i < Q; ++i) {
         const double h1 = y[i], h2 = y[Q + i], h3 = y[2 * Q + i];
         const double p1 = y[3 * Q + i], p2 = y[4 * Q + i], p3 = y[5 * Q + i];

@@ -33,7 +33,7 @@ def implicit(case: Case, J: Array, gamma: float) -> Array:
 @ids
 @pytest.mark.parametrize("gamma", [1e-4, 0.3, -0.2, 50.0])
 def test_a_block_solve_is_the_dense_solve(case: Case, gamma: float) -> None:
-    """For any step, at a random state: to 1e-11, times the condition where that is bad."""
+    """For any step, at a random state, where the matrix is decently conditioned."""
     k, y, b = kernel(case), state(case, 1), state(case, 2)
     matrix = implicit(case, k.jacobian(T, y), gamma)
     out = np.full_like(b, np.nan)
@@ -41,7 +41,7 @@ def test_a_block_solve_is_the_dense_solve(case: Case, gamma: float) -> None:
     k.factor(gamma)
     k.solve(b, out)
     wanted = np.linalg.solve(matrix, b)
-    assert np.linalg.cond(matrix) < 1e5
+    assert np.linalg.cond(matrix) < 1e6
     np.testing.assert_allclose(out, wanted, rtol=0, atol=1e-11 * np.abs(wanted).max())
     np.testing.assert_array_equal(out[turns(case) :], b[turns(case) :])
 
