@@ -14,6 +14,9 @@ from geocosserat.kernel.places import cache_folder
 FLAGS = ("-std=c99", "-O3", "-march=native", "-fno-math-errno", "-fPIC", "-shared")
 """Strict floating point: no -ffast-math. Without errno, sqrt and the like need no call."""
 
+PATIENCE = 600.0
+"""Seconds that a compiler is given."""
+
 
 class CompileError(RuntimeError):
     """The C compiler refused a generated kernel; the message has its words."""
@@ -66,12 +69,17 @@ def compile_c(source: str, degree: int) -> Path:
     target = library_path(source, degree, tool)
     if target.exists():
         return target
-    with tempfile.TemporaryDirectory(dir=target.parent, prefix=".compile-") as folder:
-        code, built = Path(folder) / "rod.c", Path(folder) / "rod.so"
-        code.write_text(source)
-        command = [tool, *FLAGS, f"-DDEGREE={degree}", str(code), "-o", str(built), "-lm"]
-        done = subprocess.run(command, capture_output=True, text=True, timeout=600, check=False)
-        if done.returncode:
-            raise CompileError(f"{tool} failed on a generated kernel: {done.stderr.strip()[:2000]}")
-        os.replace(built, target)
+    try:
+        with tempfile.TemporaryDirectory(dir=target.parent, prefix=".compile-") as folder:
+            code, built = Path(folder) / "rod.c", Path(folder) / "rod.so"
+            code.write_text(source)
+            command = [tool, *FLAGS, f"-DDEGREE={degree}", str(code), "-o", str(built), "-lm"]
+            done = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE, check=False)
+            if done.returncode:
+                raise CompileError(f"{tool} failed on a generated kernel: {done.stderr.strip()[:2000]}")
+            os.replace(built, target)
+    except subprocess.TimeoutExpired:
+        raise CompileError(f"{tool} did not compile a generated kernel within {PATIENCE} s") from None
+    except OSError as error:  # a full or read-only disk, a compiler that is no program
+        raise CompileError(f"{tool} could not be used on a generated kernel: {error}") from error
     return target

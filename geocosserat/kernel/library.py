@@ -32,8 +32,9 @@ def _catalogue() -> dict[str, str]:
     return {json.loads(path.read_text())["identity"]: path.stem for path in sorted(folder.glob("*.json"))}
 
 
-def _digest(c: str, numpy: str) -> str:
-    return hashlib.sha256(c.encode() + b"\0" + numpy.encode()).hexdigest()
+def _digest(*parts: Any) -> str:
+    """Of everything that a record holds, and of the name it goes by."""
+    return hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()
 
 
 def find(identity: str) -> KernelText | None:
@@ -45,16 +46,17 @@ def find(identity: str) -> KernelText | None:
         return KernelText(identity, texts[0], texts[1], json.loads(texts[2]), "shipped")
     try:
         record = json.loads((cache_folder() / f"{identity}.json").read_text())
-        if record["digest"] != _digest(record["c"], record["numpy"]):
+        c, numpy, signature = record["c"], record["numpy"], record["signature"]
+        if record["digest"] != _digest(identity, c, numpy, signature):
             return None
-        return KernelText(identity, record["c"], record["numpy"], record["signature"], "cache")
-    except (OSError, ValueError, KeyError):
+        return KernelText(identity, c, numpy, signature, "cache")
+    except (OSError, ValueError, KeyError, TypeError):
         return None
 
 
 def store(identity: str, c: str, numpy: str, signature: dict[str, Any]) -> KernelText:
     """Keeps a newly generated kernel in the user's cache; a cache that cannot be written is not an error."""
-    record = {"c": c, "numpy": numpy, "signature": signature, "digest": _digest(c, numpy)}
+    record = {"c": c, "numpy": numpy, "signature": signature, "digest": _digest(identity, c, numpy, signature)}
     with suppress(OSError):
         write_whole(cache_folder() / f"{identity}.json", json.dumps(record).encode())
     return KernelText(identity, c, numpy, signature, "generated")

@@ -28,6 +28,8 @@ def _private(folder: Path) -> Path:
             f"expected {folder} to belong to this user and to be writable by nobody else; "
             "change its owner and mode, or set GEOCOSSERAT_CACHE to another folder"
         )
+    if not os.access(folder, os.W_OK | os.X_OK):
+        raise PermissionError(f"expected {folder} to be writable; set GEOCOSSERAT_CACHE to another folder")
     return folder
 
 

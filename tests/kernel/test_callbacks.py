@@ -1,0 +1,103 @@
+"""A compiled kernel as SUNDIALS calls it: the same rate, Jacobian, factors and solves, through addresses."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import cffi
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from geocosserat.kernel.contract import NativeKernel
+from geocosserat.kernel.native import NativeRod
+from tests.kernel.kernels import Case, T, cases, kernel, rate, state
+
+Array = NDArray[np.float64]
+CASES = [case for case in cases(("c",)) if case.name.split()[1] in ("everything", "hung", "plain")]
+
+
+class Caller:
+    """Calls a kernel's callbacks with vectors and matrices that are plain arrays: their address is their data."""
+
+    def __init__(self, k: NativeRod, dense: bool) -> None:
+        self.ffi = ffi = cffi.FFI()
+        self.data = ffi.callback("double *(void *)", lambda thing: ffi.cast("double *", thing))
+        address = int(ffi.cast("uintptr_t", self.data))
+        self.callbacks = k.callbacks(address, address, dense)
+
+    def at(self, array: Array) -> Any:
+        return self.ffi.cast("void *", array.ctypes.data)
+
+    def function(self, name: str, arguments: str) -> Any:
+        return self.ffi.cast(f"int (*)({arguments})", getattr(self.callbacks, name))
+
+    @property
+    def problem(self) -> Any:
+        return self.ffi.cast("void *", self.callbacks.data)
+
+    def rate(self, t: float, y: Array, out: Array) -> int:
+        return int(self.function("rate", "double, void *, void *, void *")(t, self.at(y), self.at(out), self.problem))
+
+    def jacobian(self, t: float, y: Array) -> Array:
+        J, none = np.full((len(y), len(y)), np.nan), self.ffi.NULL
+        call = self.function("jacobian", "double, void *, void *, void *, void *, void *, void *, void *")
+        assert call(t, self.at(y), none, self.at(J), self.problem, none, none, none) == 0
+        return J.T  # SUNDIALS stores columns
+
+    def setup(self, t: float, y: Array, usable: bool, gamma: float) -> tuple[int, bool]:
+        renewed = self.ffi.new("int *", -1)
+        call = self.function("setup", "double, void *, void *, int, int *, double, void *")
+        code = call(t, self.at(y), self.ffi.NULL, usable, renewed, gamma, self.problem)
+        return int(code), bool(renewed[0])
+
+    def solve(self, b: Array) -> Array:
+        out, none = np.full_like(b, np.nan), self.ffi.NULL
+        call = self.function("solve", "double, void *, void *, void *, void *, double, double, int, void *")
+        assert call(0.0, none, none, self.at(b), self.at(out), 0.0, 0.0, 1, self.problem) == 0
+        return out
+
+
+def native(case: Case) -> NativeRod:
+    found = kernel(case)
+    assert isinstance(found, NativeRod)
+    assert isinstance(found, NativeKernel)
+    return found
+
+
+@pytest.mark.parametrize("case", CASES, ids=str)
+def test_callbacks_give_the_rate_and_the_jacobian_of_the_kernel(case: Case) -> None:
+    """Digit for digit, the matrix by columns."""
+    k, y = native(case), state(case, 1)
+    caller, out = Caller(k, dense=True), np.empty(len(state(case, 1)))
+    assert caller.rate(T, y, out) == 0
+    np.testing.assert_array_equal(out, rate(case, T, y))
+    np.testing.assert_array_equal(caller.jacobian(T, y), k.jacobian(T, y))
+
+
+@pytest.mark.parametrize("case", CASES, ids=str)
+def test_the_preconditioner_is_the_block_solve_of_the_state_it_was_made_at(case: Case) -> None:
+    """A Jacobian said to be usable is kept, another step only factors it again; and it says which of both it did."""
+    k, y, b = native(case), state(case, 1), state(case, 2)
+    caller, wanted = Caller(k, dense=False), np.empty(len(b))
+    for at, usable, gamma in ((y, False, 0.1), (state(case, 3), True, 0.1), (state(case, 3), True, 0.7)):
+        assert caller.setup(T, at, usable, gamma) == (0, not usable)
+        found = caller.solve(b)
+        k.prepare(T, y)
+        k.factor(gamma)
+        k.solve(b, wanted)
+        np.testing.assert_array_equal(found, wanted)
+
+
+@pytest.mark.parametrize("case", CASES[:1], ids=str)
+def test_a_rate_that_is_not_finite_asks_for_a_smaller_step(case: Case) -> None:
+    """A positive code is "recoverable" to SUNDIALS; a singular preconditioner likewise."""
+    k, y = native(case), state(case, 1)
+    out = np.empty(len(y))
+    for bad in (np.nan, np.inf, -np.inf):
+        broken = y.copy()
+        broken[0] = bad
+        assert Caller(k, dense=True).rate(T, broken, out) == 1
+        code, _ = Caller(k, dense=False).setup(T, broken, False, 0.1)
+        assert code >= 0
+    assert Caller(k, dense=True).rate(T, y, out) == 0
