@@ -14,7 +14,7 @@ from geocosserat.model.scene import load_scene
 from geocosserat.shipped import shipped
 
 _STIFFNESS = {"planar": [2.0] * 3, "spatial": [2.0] * 6}
-_HELIX = ["1", "0", "0", "0.5", "0.6", "0.7"]
+_HELIX = ["1", "0", "0", "0.5", "0", "0.7"]
 _TIP = {"planar": [0.1, 0.2], "spatial": [0.1, 0.2, 0.3]}
 
 
@@ -36,7 +36,7 @@ def catalogue() -> Iterator[tuple[str, str, Mapping[str, Any]]]:
             f"{motion.capitalize()} rod under a dead force at its tip",
             _scene(motion, ends=pulled),
         )
-    helix = {"right": {"kind": "free", "force": _TIP["spatial"], "frame": "world"}}
+    helix = {"right": {"kind": "free", "force": [0.1, 0.0, 0.2], "frame": "world"}}
     yield (
         "helix_dead_load",
         "Spatial rod, helical at rest, under a dead force at its tip",

@@ -1,0 +1,113 @@
+"""CVODE calling a compiled problem directly: the same answers as through Python, also when the problem fails."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from geocosserat.kernel.contract import NativeKernel
+from geocosserat.solver import integrate as door
+from geocosserat.solver.integrate import integrate
+from geocosserat.solver.settings import DENSE_LIMIT
+from geocosserat.solver.sundials import sundials
+from tests.solver.native_problem import NativeForced, build
+from tests.solver.problems import forced, forced_solution
+
+SIZES = (7, DENSE_LIMIT + 10)
+TIMES = np.array([0.0, 1e-6, 0.1, 0.4, 1.0, 2.0])
+
+
+@pytest.fixture(scope="module")
+def library(c_compiler: str, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The compiled problem."""
+    return build(c_compiler, tmp_path_factory.mktemp("forced"))
+
+
+@pytest.fixture(autouse=True)
+def _needs_sundials() -> None:
+    if sundials() is None:
+        pytest.skip("the SUNDIALS that came with scikit-sundae cannot be called directly")
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_a_compiled_problem_is_integrated_without_python(library: Path, size: int) -> None:
+    """To the closed solution; its Python rate is called once at most, to look at the start."""
+    problem = NativeForced(library, size)
+    assert isinstance(problem, NativeKernel)
+    found = integrate(problem, np.full(size, 2.0), TIMES, "cvode", 1e-9, 1e-11)
+    assert found.reached
+    np.testing.assert_allclose(found.states, forced_solution(size, TIMES, 2.0), atol=1e-6)
+    assert found.rates == problem.problem.calls
+    assert 0 < found.jacobians < 0.3 * found.steps
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_both_ways_into_cvode_take_the_same_steps(library: Path, size: int) -> None:
+    """The same method with the same settings: equal states to round-off, equal numbers of rates."""
+    native = integrate(NativeForced(library, size), np.ones(size), TIMES, "cvode", 1e-8, 1e-10)
+    python = integrate(forced(size), np.ones(size), TIMES, "cvode", 1e-8, 1e-10)
+    np.testing.assert_allclose(native.states, python.states, atol=1e-10)
+    assert abs(native.rates - python.rates) <= 0.1 * native.rates
+
+
+def test_without_the_library_python_takes_over(library: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Another generation of SUNDIALS is no error: a kernel without Jacobian in Python would be asked for one."""
+    monkeypatch.setattr(door, "sundials", lambda: None)
+    with pytest.raises(AttributeError, match="jacobian"):
+        integrate(NativeForced(library, 7), np.ones(7), TIMES)
+    assert integrate(forced(7), np.ones(7), TIMES).reached
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_a_rate_that_cannot_be_evaluated_ends_the_run_there(library: Path, size: int) -> None:
+    """Not a hundred thousand steps later: what was good is kept, and the reason says when."""
+    problem = NativeForced(library, size, bad=0.5)
+    found = integrate(problem, np.ones(size), TIMES, "cvode", 1e-8, 1e-10)
+    assert not found.reached
+    assert "t = 0.5" in found.reason
+    np.testing.assert_array_equal(found.times, TIMES[:4])
+    np.testing.assert_allclose(found.states, forced_solution(size, found.times), atol=1e-5)
+    assert problem.problem.calls < 20_000
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_a_rate_that_cannot_be_evaluated_at_the_start_is_said_so(library: Path, size: int) -> None:
+    """The start comes back alone."""
+    found = integrate(NativeForced(library, size, bad=-1.0), np.ones(size), TIMES)
+    assert "not finite at the start" in found.reason
+    assert found.times.tolist() == [0.0]
+
+
+def test_failing_prints_nothing(library: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    """SUNDIALS warns on standard error unless it is kept from it."""
+    integrate(NativeForced(library, 7, bad=0.5), np.ones(7), TIMES, "cvode", 1e-8, 1e-10)
+    assert capfd.readouterr() == ("", "")
+
+
+def test_progress_is_told_and_frames_are_handed_on(library: Path) -> None:
+    """Fractions grow to one; every instant of output comes once."""
+    told: list[float] = []
+    frames: list[int] = []
+    integrate(NativeForced(library, 7), np.ones(7), TIMES, progress=lambda fraction, steps: told.append(fraction),
+              frame=lambda number, state: frames.append(number))  # fmt: skip
+    assert told == sorted(told)
+    assert told[-1] == pytest.approx(1.0)
+    assert frames == [1, 2, 3, 4, 5]
+
+
+def test_integrations_leave_no_memory_behind(library: Path) -> None:
+    """A thousand of them take no more than a few kilobytes each... of nothing."""
+    import resource
+
+    def used() -> int:
+        return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+
+    problem, start = NativeForced(library, SIZES[0]), np.ones(SIZES[0])
+    for _ in range(200):
+        integrate(problem, start, TIMES)
+    before = used()
+    for _ in range(1000):
+        integrate(problem, start, TIMES)
+    assert used() - before < 4000  # kilobytes
