@@ -5,7 +5,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from geocosserat.codegen.source import KernelSource, environment
+from geocosserat.codegen.source import KernelSource, environment, one_line
 from geocosserat.discretisation.mesh import Array
 from geocosserat.discretisation.semidiscrete import SemiDiscrete
 
@@ -51,7 +51,7 @@ def take_away(source: KernelSource, rod: SemiDiscrete, until: float, title: str,
     signature = json.dumps(source.signature, indent=2) + "\n"
 
     def render(template: str) -> str:
-        known = {"title": " ".join(title.replace("*/", "").split()), "degree": rod.mesh.degree}
+        known = {"title": one_line(title), "degree": rod.mesh.degree}
         return environment().get_template(template).render(**known, d=rod.structure.group.dimension)
 
     if backend == "c":

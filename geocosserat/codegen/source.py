@@ -1,5 +1,6 @@
 """The text of a kernel: tapes of the pointwise expressions, printed into the templates."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -11,7 +12,7 @@ from geocosserat.codegen.identity import identity
 from geocosserat.codegen.printing import print_expression, print_tape
 from geocosserat.codegen.tape import Tape, jacobian, record
 from geocosserat.discretisation.pointwise import Pointwise, pointwise
-from geocosserat.discretisation.structure import ZERO, RodStructure
+from geocosserat.discretisation.structure import ZERO, RodStructure, Row
 from geocosserat.model.expressions import symbols
 from geocosserat.shipped import shipped
 from geocosserat.version import VERSION
@@ -120,6 +121,12 @@ class _Writer:
                 printed.append((c.name, code))
         return printed
 
+    def needed(self, loads: Iterable[Row]) -> frozenset[str]:
+        """Names of these loads, and of the parameters in them."""
+        names = {name for load in loads for name in load}
+        expressions = [c.expression for c in self.structure.at("time") if c.name in names]
+        return frozenset(names.union(*(symbols(e) for e in expressions if e is not None)))
+
     def body_weight(self) -> list[str]:
         """Components of the dead force density in the moving frame."""
         planar = self.structure.motion == "planar"
@@ -136,19 +143,20 @@ class _Writer:
     def context(self, tapes: dict[str, Tape], pose: tuple[sp.Symbol, ...]) -> dict[str, Any]:
         """Everything the templates of this language ask for."""
         s, group = self.structure, self.structure.group
-        parameters = frozenset(c.name for c in s.at("uniform") if c.name.startswith("p_"))
         loads = [
             {"side": side, "frame": load.frame, "wrench": _code(load.wrench)}
             for side, load in zip(("left", "right"), s.loads, strict=True)
             if load is not None
         ]
-        applied = parameters | set(s.weight) | {name for load in s.loads if load is not None for name in load.wrench}
+        applied = self.needed([s.weight, *(load.wrench for load in s.loads if load is not None)])
+        seen = self.needed([s.weight, *(load.wrench for load in s.loads if load is not None and load.frame == "world")])
+        timed = self.timed(along_nodes=False)
         blocks = {name: self.block(tape) for name, tape in tapes.items()}
         return {
             **blocks,
             "velocity": self.block(tapes["velocity"], also=applied),
             "mobility": self.block(_mobility(s)),
-            "applied": self.block(Tape((), ()), also=applied),
+            "seen": self.block(Tape((), ()), also=seen),
             "d": group.dimension,
             "space": group.translations,
             "rotations": group.rotations,
@@ -164,9 +172,16 @@ class _Writer:
             "loads": loads,
             "weight": _code(s.weight) if any(name != ZERO for name in s.weight) else [],
             "body_weight": self.body_weight(),
-            "timed": self.timed(along_nodes=False),
+            "timed": timed,
+            "timed_seen": [(name, code) for name, code in timed if name in seen],
             "timed_nodes": self.timed(along_nodes=True, coordinate="r->u[n]" if self.language == "c" else "self.u"),
         }
+
+
+def one_line(title: str) -> str:
+    """A title that can stand in a comment of C and make and in a docstring: it ends none, escapes and joins nothing."""
+    kept = "".join(c for c in title if c not in '"\\*')
+    return " ".join(kept.replace("??", "").split())
 
 
 @lru_cache(maxsize=1)
@@ -204,7 +219,7 @@ def generate(structure: RodStructure, title: str = "") -> KernelSource:
         **places,
     }
     heading = {
-        "title": title or f"Semi-discrete {structure.motion} rod",
+        "title": one_line(title) or f"Semi-discrete {structure.motion} rod",
         "version": VERSION,
         "identity": name,
         "group": group.name,

@@ -1,12 +1,14 @@
 """Where a run was when it stopped, so that it can go on from there."""
 
 import io
+import time
 import zipfile
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
+from geocosserat.model.errors import InputError
 from geocosserat.results.atomic import write_bytes
 from geocosserat.results.errors import FileError
 from geocosserat.results.solution import Array
@@ -58,3 +60,51 @@ def load_checkpoint(folder: Path) -> Checkpoint:
     if found.states.ndim != 2 or not len(found.states) or not np.all(np.isfinite(found.states)):
         raise FileError(path, "a checkpoint to go on from", "states that are not usable", "start without --resume")
     return found
+
+
+class Keeper:
+    """Writes a checkpoint now and then, if there is a folder to write to."""
+
+    EVERY = 5.0  # seconds
+
+    def __init__(self, folder: Path | None, key: str, resume: bool) -> None:
+        self.folder, self.key = folder, key
+        self.resumed: Checkpoint | None = None
+        if resume:
+            assert folder is not None
+            self.resumed = load_checkpoint(folder)
+            if self.resumed.key != key:
+                raise InputError(
+                    "the scene and settings of the interrupted run",
+                    f"others than those of the checkpoint in {folder}",
+                    "resume with the same scene, or start without --resume",
+                    key="--resume",
+                )
+        self.rung, self.states, self.before = 0, [np.empty(0)], np.empty((0, 0))
+        self.saved = time.monotonic()
+
+    def begin(self, rung: int, start: Array, before: Array) -> Array:
+        """States (frames, size) of this rung that are there already; at least the start."""
+        resumed = self.resumed
+        done = resumed.states if resumed is not None and resumed.rung == rung else start[None]
+        if done.shape[1] != len(start):
+            raise InputError(f"states of {len(start)} numbers", f"{done.shape[1]}", "start without --resume")
+        self.rung, self.states, self.before = rung, list(done), before
+        return np.array(done)
+
+    def frame(self, _: int, state: Array) -> None:
+        """Notes a state that was reached."""
+        self.states.append(state.copy())
+        if time.monotonic() - self.saved > self.EVERY:
+            self.save()
+
+    def save(self) -> None:
+        """Writes the checkpoint now."""
+        if self.folder is not None:
+            save_checkpoint(Checkpoint(self.key, self.rung, np.array(self.states), self.before), self.folder)
+        self.saved = time.monotonic()
+
+    def finish(self) -> None:
+        """The run is complete: nothing to go on from."""
+        if self.folder is not None:
+            (self.folder / NAME).unlink(missing_ok=True)

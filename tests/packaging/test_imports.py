@@ -25,7 +25,7 @@ STAGES = {
     "accuracy": ("discretisation.mesh",),  # the conductor's plan
 }
 BASE = ("version", "shipped")  # free to all; import nothing of the package
-SEE_ALL = ("", "__main__", "cli", "conductor")  # "" is geocosserat/__init__.py
+SEE_ALL = ("", "__main__", "cli", "conductor", "simulation")  # "" is geocosserat/__init__.py
 
 EVERYWHERE = ("",)
 LIBRARIES = {

@@ -1,0 +1,209 @@
+"""Simulating a scene: at its own setting, or finer and finer until two rods agree."""
+
+import platform
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime
+
+import numpy as np
+
+from geocosserat.accuracy import DEFAULT_ACCURACY, Setting, ladder, position_gap
+from geocosserat.discretisation.mesh import Array, Mesh
+from geocosserat.discretisation.semidiscrete import SemiDiscrete, discretise
+from geocosserat.discretisation.structure import RodStructure
+from geocosserat.kernel.library import KernelText
+from geocosserat.kernel.load import load
+from geocosserat.kernel.native import NativeRod
+from geocosserat.kernel.pure import NumpyRod
+from geocosserat.model.expressions import evaluate
+from geocosserat.model.records import Scene
+from geocosserat.results.checkpoint import Keeper
+from geocosserat.results.progress import progress
+from geocosserat.results.solution import Solution
+from geocosserat.solver.integrate import integrate
+from geocosserat.solver.trajectory import Trajectory
+from geocosserat.version import VERSION
+
+
+class Clock:
+    """Seconds spent on each kind of work."""
+
+    def __init__(self) -> None:
+        self.seconds = dict.fromkeys(("derive", "compile", "plan", "solve"), 0.0)
+
+    @contextmanager
+    def __call__(self, kind: str) -> Iterator[None]:
+        start = time.perf_counter()
+        try:
+            yield
+        finally:
+            self.seconds[kind] += time.perf_counter() - start
+
+    def plan_ends(self) -> None:
+        """Books what counted as solving so far as planning."""
+        self.seconds["plan"] += self.seconds["solve"]
+        self.seconds["solve"] = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Attempt:
+    """One simulation at one setting."""
+
+    setting: Setting
+    rod: SemiDiscrete
+    kernel: NativeRod | NumpyRod
+    trajectory: Trajectory
+    text: KernelText
+
+
+def tolerances(rod: SemiDiscrete, rtol: float, atol: float | None, energy: float) -> Array:
+    """Absolute tolerance of each state entry, (size,): `atol` for strains, or rtol where none is given.
+
+    Strains count by the displacement they make: stretches as they are, curvatures in units of 1 / length, and so
+    for the carried pose. The two energies count by the energy stored at the start, or that of bending by a radian.
+    """
+    strain = rtol if atol is None else atol
+    length, group = float(rod.mesh.edges[-1]), rod.structure.group
+    points = rod.mesh.elements * rod.mesh.degree
+    turn = np.repeat([strain] * group.translations + [strain / length] * group.rotations, points)
+    carried = [strain * length] * group.translations + [strain] * (rod.structure.carried - group.translations)
+    return np.concatenate([turn, carried[: rod.structure.carried], [strain * energy] * 2])
+
+
+def _unit_of_energy(scene: Scene, rod: SemiDiscrete, kernel: NativeRod | NumpyRod) -> float:
+    """Energy stored at the start, or that of bending the softest way by a radian if that is more."""
+    model, group = scene.model, scene.model.group
+    middle = {**model.parameters, "u": model.length / 2}
+    soft = min(float(evaluate(model.stiffness[i][i], middle)) for i in range(group.translations, group.dimension))
+    return max(kernel.observe(0.0, rod.state)[2], soft / model.length)
+
+
+def chosen_setting(scene: Scene) -> Setting | None:
+    """The setting the scene fixes, if it fixes any part of one."""
+    run = scene.run
+    if run.elements is None and run.degree is None and run.rtol is None:
+        return None
+    rtol = run.rtol if run.rtol is not None else (run.accuracy or DEFAULT_ACCURACY) / 10
+    return Setting(run.elements or 1, run.degree or 8, rtol)
+
+
+class Simulation:
+    """Simulates a scene at its setting, or at finer and finer ones until two agree; keeps checkpoints on the way."""
+
+    def __init__(
+        self,
+        scene: Scene,
+        backend: str,
+        kernel_text: Callable[[RodStructure], KernelText],
+        clock: Clock,
+        keeper: Keeper,
+    ) -> None:
+        self.scene, self.backend, self.kernel_text, self.clock, self.keeper = scene, backend, kernel_text, clock, keeper
+
+    def solve(self) -> tuple[Attempt, float | None]:
+        """The attempt to report, and the estimate of its error relative to the length (None at a fixed setting)."""
+        chosen = chosen_setting(self.scene)
+        if chosen is not None:
+            return self._attempt(0, chosen, np.empty((0, 0))), None
+        accuracy = self.scene.run.accuracy or DEFAULT_ACCURACY
+        resumed = self.keeper.resumed
+        before: tuple[Mesh, Array] | None = None
+        estimate: float | None = None
+        for rung, setting in enumerate(ladder(accuracy)):
+            if resumed is not None and rung < resumed.rung:
+                if rung == resumed.rung - 1:
+                    before = discretise(self.scene, setting.elements, setting.degree).mesh, resumed.before
+                continue
+            self.clock.plan_ends()  # what was solved before this one turns out to be planning
+            now = self._attempt(rung, setting, before[1] if before else np.empty((0, 0)))
+            positions = now.rod.poses(now.trajectory.states[-1]).position
+            if not now.trajectory.reached:
+                break
+            if before is not None:
+                estimate = position_gap(*before, now.rod.mesh, positions) / self.scene.model.length
+                if estimate <= accuracy:
+                    break
+            before = now.rod.mesh, positions
+        return now, estimate
+
+    def _attempt(self, rung: int, setting: Setting, before: Array) -> Attempt:
+        scene = self.scene
+        with self.clock("derive"):
+            rod = discretise(scene, setting.elements, setting.degree)
+            text = self.kernel_text(rod.structure)
+        with self.clock("compile"):
+            kernel = load(text, rod, self.backend)
+        times = np.linspace(0.0, scene.run.until, scene.run.frames)
+        atol = tolerances(rod, setting.rtol, scene.run.atol, _unit_of_energy(scene, rod, kernel))
+        done = self.keeper.begin(rung, rod.state, before)
+        with self.clock("solve"), progress(scene.title) as report:
+            if len(done) == len(times):  # stopped between this rung and the next
+                trajectory = Trajectory(times, done, 0, 0, 0, True)
+            else:
+                rest = integrate(
+                    kernel,
+                    done[-1],
+                    times[len(done) - 1 :],
+                    scene.run.method or "cvode",
+                    setting.rtol,
+                    atol,
+                    report,
+                    self.keeper.frame,
+                )
+                states = np.concatenate([done[:-1], rest.states])
+                trajectory = replace(rest, times=times[: len(states)], states=states)
+        return Attempt(setting, rod, kernel, trajectory, text)
+
+
+def solution_of(scene: Scene, attempt: Attempt, estimate: float | None, clock: Clock) -> Solution:
+    """The result of an attempt as the record that is kept: fields over time, with their provenance."""
+    rod, kernel, trajectory = attempt.rod, attempt.kernel, attempt.trajectory
+    seen = [kernel.observe(float(t), y) for t, y in zip(trajectory.times, trajectory.states, strict=True)]
+    poses = rod.poses(trajectory.states)
+    accuracy = scene.run.accuracy
+    missed = estimate is not None and estimate > (accuracy or DEFAULT_ACCURACY)
+    return Solution(
+        scene=scene.source,
+        title=scene.title,
+        motion=rod.structure.motion,
+        length=scene.model.length,
+        time=trajectory.times,
+        u=rod.mesh.u,
+        u_point=rod.mesh.u_point,
+        position=poses.position,
+        rotation=poses.rotation,
+        angle=poses.angle,
+        twist=np.stack([twist.T for twist, _, _ in seen]),
+        turn=rod.turn(trajectory.states).swapaxes(-1, -2),
+        stress=np.stack([stress.T for _, stress, _ in seen]),
+        energy=np.array([energy for _, _, energy in seen]),
+        dissipated=trajectory.states[:, -2],
+        work=trajectory.states[:, -1],
+        method=scene.run.method or "cvode",
+        elements=rod.mesh.elements,
+        degree=rod.mesh.degree,
+        unknowns=rod.unknowns,
+        backend=kernel.backend,
+        requested=accuracy,
+        estimated=estimate,
+        evaluations={"rate": trajectory.rates, "jacobian": trajectory.jacobians, "steps": trajectory.steps},
+        seconds=clock.seconds,
+        provenance=_provenance(attempt),
+        reached=trajectory.reached and not missed,
+        reason=trajectory.reason or ("the accuracy asked for was not reached by refinement" if missed else ""),
+    )
+
+
+def _provenance(attempt: Attempt) -> dict[str, str]:
+    return {
+        "geocosserat": VERSION,
+        "python": platform.python_version(),
+        "numpy": np.__version__,
+        "platform": platform.platform(),
+        "kernel": attempt.text.identity,
+        "kernel_origin": attempt.text.origin,
+        "rtol": repr(attempt.setting.rtol),
+        "date": datetime.now(UTC).isoformat(timespec="seconds"),
+    }
