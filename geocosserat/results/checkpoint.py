@@ -47,7 +47,7 @@ def load_checkpoint(folder: Path) -> Checkpoint:
     """
     path = folder / NAME
     try:
-        with np.load(path, allow_pickle=False) as stored:
+        with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as stored:
             found = Checkpoint(
                 str(stored["key"]), int(stored["rung"]), np.asarray(stored["states"]), np.asarray(stored["before"])
             )

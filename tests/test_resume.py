@@ -1,0 +1,81 @@
+"""A run that was interrupted goes on from its checkpoint."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import geocosserat
+from geocosserat import simulation
+from geocosserat.model.errors import InputError
+from geocosserat.results.checkpoint import NAME, load_checkpoint
+from geocosserat.results.errors import FileError
+from geocosserat.solver.trajectory import Progress
+
+
+def _interrupt_after(calls: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Presses Ctrl-C when progress has been reported so many times in all."""
+    left = [calls]
+
+    @contextmanager
+    def progress(label: str) -> Iterator[Progress]:
+        def report(fraction: float, steps: int) -> None:
+            left[0] -= 1
+            if left[0] < 0:
+                raise KeyboardInterrupt
+
+        yield report
+
+    monkeypatch.setattr(simulation, "progress", progress)
+
+
+@pytest.mark.parametrize("calls", [0, 7, 51, 80])
+def test_an_interrupted_run_goes_on_to_the_same_end(
+    calls: int, tmp_path: Path, examples: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Interrupted at the start, in the first refinement, between two, or in the second: the tip is the same."""
+    scene, out = examples / "cantilever.toml", tmp_path / "out"
+    with monkeypatch.context() as patched:
+        _interrupt_after(calls, patched)
+        with pytest.raises(KeyboardInterrupt):
+            geocosserat.run(scene, out)
+    assert (out / NAME).exists()
+    assert not (out / "solution.nc").exists()
+    resumed = geocosserat.run(scene, out, resume=True)
+    whole = geocosserat.run(scene)
+    assert resumed.reached
+    assert len(resumed.solution.time) == len(whole.solution.time)
+    np.testing.assert_allclose(resumed.tip["position"], whole.tip["position"], rtol=0, atol=1e-6)
+    np.testing.assert_allclose(resumed.ledger["dissipated"], whole.ledger["dissipated"], rtol=1e-5)
+    assert not (out / NAME).exists()
+
+
+def test_a_checkpoint_of_another_scene_is_refused(
+    tmp_path: Path, examples: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Going on with other numbers than one began with would be a run of no scene at all."""
+    with monkeypatch.context() as patched:
+        _interrupt_after(7, patched)
+        with pytest.raises(KeyboardInterrupt):
+            geocosserat.run(examples / "cantilever.toml", tmp_path)
+    with pytest.raises(InputError, match=r"--resume: expected the scene and settings of the interrupted run"):
+        geocosserat.run(examples / "cantilever.toml", tmp_path, settings=["kappa=2e4"], resume=True)
+    assert load_checkpoint(tmp_path).states.shape[0] > 7
+
+
+def test_a_damaged_or_missing_checkpoint_is_refused(tmp_path: Path, examples: Path) -> None:
+    """A file that is not whole is named, with what to do; nothing is written."""
+    with pytest.raises(FileError, match=r"checkpoint.npz: expected a checkpoint to go on from, found none"):
+        geocosserat.run(examples / "cantilever.toml", tmp_path, resume=True)
+    (tmp_path / NAME).write_bytes(b"PK\x03\x04 half of an archive")
+    with pytest.raises(FileError, match=r"expected a checkpoint to go on from, found a damaged file .*start without"):
+        geocosserat.run(examples / "cantilever.toml", tmp_path, resume=True)
+    assert [path.name for path in tmp_path.iterdir()] == [NAME]
+
+
+def test_resuming_needs_a_folder(examples: Path) -> None:
+    """Without --out there is nothing to go on from."""
+    with pytest.raises(InputError, match=r"--resume: expected the folder of the interrupted run, found none; name it"):
+        geocosserat.run(examples / "cantilever.toml", resume=True)
