@@ -1,4 +1,4 @@
-"""What all tests share: a private cache for generated and compiled kernels, the examples, and a C compiler if there is one."""
+"""What all tests share: a private cache for kernels, the examples, and a C compiler if there is one."""
 
 from __future__ import annotations
 

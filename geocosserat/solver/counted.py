@@ -1,5 +1,7 @@
 """A kernel with its calls counted."""
 
+import numpy as np
+
 from geocosserat.kernel.contract import Array, Kernel
 
 
@@ -25,9 +27,15 @@ class Counted:
         self.kernel.rate(t, y, out)
 
     def jacobian(self, t: float, y: Array) -> Array:
-        """See Kernel.jacobian."""
+        """See Kernel.jacobian.
+
+        Raises FloatingPointError if it is not finite, which no integrator looks for.
+        """
         self.jacobians += 1
-        return self.kernel.jacobian(t, y)
+        J = self.kernel.jacobian(t, y)
+        if not np.all(np.isfinite(J)):
+            raise FloatingPointError(f"the Jacobian is not finite at t = {t:.6g}")
+        return J
 
     def prepare(self, t: float, y: Array) -> None:
         """See Kernel.prepare."""

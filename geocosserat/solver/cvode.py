@@ -7,6 +7,9 @@ rod. (The banded matrices of the binding would be stored in full.)
 Source: A. C. Hindmarsh et al., ACM Trans. Math. Softw. 31 (2005) 363.
 """
 
+import os
+from contextlib import redirect_stdout
+from io import StringIO
 from typing import Any
 
 import numpy as np
@@ -14,8 +17,13 @@ from sksundae.cvode import CVODE, CVODEPrecond
 
 from geocosserat.kernel.contract import Array, Kernel
 from geocosserat.solver.counted import Counted
-from geocosserat.solver.settings import DENSE_LIMIT, KRYLOV, STEP_LIMIT
+from geocosserat.solver.settings import BREATH, DENSE_LIMIT, KRYLOV, STEP_LIMIT, stands_still
 from geocosserat.solver.trajectory import Frame, Progress, Trajectory
+
+TOO_MUCH_WORK = -1
+
+# SUNDIALS warns on standard error; what matters of it becomes the reason of the trajectory
+os.environ.setdefault("SUNLOGGER_WARNING_FILENAME", os.devnull)
 
 
 def cvode(
@@ -26,7 +34,7 @@ def cvode(
     The binding tells no step counts: distinct instants of the rate stand for the steps tried.
     """
     counted = Counted(kernel)
-    options: dict[str, Any] = {"rtol": rtol, "atol": atol, "max_num_steps": STEP_LIMIT}
+    options: dict[str, Any] = {"rtol": rtol, "atol": atol, "max_num_steps": BREATH}
     if kernel.size <= DENSE_LIMIT:
         options |= {"linsolver": "dense", "jacfn": _dense(counted)}
     else:
@@ -35,17 +43,34 @@ def cvode(
     states = np.empty((len(times), kernel.size))
     states[0] = start
     solver.init_step(times[0], start)
-    done, reason = 1, ""
-    for i in range(1, len(times)):
-        # the last instant is a hard stop: nothing behind it is ever evaluated
-        result = solver.step(times[i], method="normal", tstop=float(times[-1]))
-        if not result.success:
-            reason = f"CVODE stopped at t = {float(np.ravel(result.t)[-1]):.6g}: {result.message}"
+    done, reason, t, breaths = 1, "", float(times[0]), 0
+    while done < len(times):
+        before = t
+        try:
+            with redirect_stdout(StringIO()):  # the binding prints what it also returns
+                # the last instant is a hard stop: nothing behind it is ever evaluated
+                result = solver.step(times[done], method="normal", tstop=float(times[-1]))
+        except (ArithmeticError, np.linalg.LinAlgError) as error:
+            reason = f"CVODE stopped after t = {before:.6g}: {error}"
             break
-        states[i] = result.y
-        done = i + 1
-        frame(i, states[i])
-        progress((times[i] - times[0]) / (times[-1] - times[0]), counted.instants)
+        t = float(np.ravel(result.t)[-1])
+        if result.status == TOO_MUCH_WORK:
+            progress((t - times[0]) / (times[-1] - times[0]), counted.instants)
+            breaths += 1
+            if not stands_still(before, t, BREATH) and breaths * BREATH < STEP_LIMIT:
+                continue
+            reason = f"CVODE stopped at t = {t:.6g}: its steps go nowhere; the motion may be singular here"
+            break
+        if not result.success:
+            reason = f"CVODE stopped at t = {t:.6g}: {result.message}"
+            break
+        if not np.all(np.isfinite(result.y)):
+            reason = f"CVODE returned values that are not finite at t = {t:.6g}"
+            break
+        states[done] = result.y
+        frame(done, states[done])
+        done += 1
+        progress((t - times[0]) / (times[-1] - times[0]), counted.instants)
     return Trajectory(
         times=times[:done].copy(),
         states=states[:done],
@@ -65,15 +90,24 @@ def _dense(counted: Counted) -> Any:
 
 
 def _precondition(counted: Counted) -> CVODEPrecond:
-    kernel = counted.kernel
+    """The kernel's elimination; where that fails, none: GMRES then gives up, and CVODE tries a smaller step."""
+    kernel, sound = counted.kernel, True
 
     def setup(t: float, y: Array, rate: Array, usable: bool, renewed: list[int], gamma: float) -> None:
+        nonlocal sound
         if not usable:
             counted.prepare(t, y)
         renewed[0] = int(not usable)
-        kernel.factor(gamma)
+        try:
+            kernel.factor(gamma)
+            sound = True
+        except np.linalg.LinAlgError:
+            sound = False
 
     def solve(t: float, y: Array, rate: Array, b: Array, x: Array, gamma: float, tolerance: float, side: int) -> None:
-        kernel.solve(b, x)
+        if sound:
+            kernel.solve(b, x)
+        if not sound or not np.all(np.isfinite(x)):
+            x[:] = b
 
     return CVODEPrecond(setup, solve, side="left")

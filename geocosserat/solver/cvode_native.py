@@ -8,14 +8,12 @@ from typing import Any
 import numpy as np
 
 from geocosserat.kernel.contract import Array, Kernel, NativeKernel
-from geocosserat.solver.settings import DENSE_LIMIT, KRYLOV, STEP_LIMIT
+from geocosserat.solver.settings import BREATH, DENSE_LIMIT, KRYLOV, STEP_LIMIT, stands_still
 from geocosserat.solver.sundials import Sundials
 from geocosserat.solver.trajectory import Frame, Progress, Trajectory
 
 BDF, NORMAL, LEFT = 2, 1, 1
 TOO_MUCH_WORK, STOPPED = -1, 1
-BREATH = 500
-"""Steps between two looks at the world outside: progress, and a user's interrupt."""
 
 
 def cvode_native(
@@ -59,6 +57,7 @@ class _Session:
         self._check(lib.CVodeSVtolerances(cvode, rtol, tolerance))
         self._check(lib.CVodeSetUserData(cvode, ffi.cast("void *", c.data)))
         self._check(lib.CVodeSetMaxNumSteps(cvode, BREATH))
+        self._check(lib.CVodeSetMaxHnilWarns(cvode, -1))  # nor do warnings appear there
         self.matrix = lib.SUNDenseMatrix(kernel.size, kernel.size, context) if dense else ffi.NULL
         self.solver = (
             lib.SUNLinSol_Dense(y, self.matrix, context) if dense else lib.SUNLinSol_SPGMR(y, LEFT, KRYLOV, context)
@@ -100,10 +99,14 @@ class _Session:
         self._check(lib.CVodeSetStopTime(cvode, last))
         done, reason = 1, ""
         while done < len(times):
+            before = reached_t[0]
             code = lib.CVode(cvode, float(times[done]), self.vectors[0], reached_t, NORMAL)
             steps = self._count("Steps")
             if code == TOO_MUCH_WORK:
                 progress((reached_t[0] - first) / (last - first), steps)
+                if stands_still(before, reached_t[0], BREATH):
+                    reason = f"CVODE stopped at t = {reached_t[0]:.6g}: its steps go nowhere; {SINGULAR}"
+                    break
                 if steps < STEP_LIMIT:
                     continue
                 reason = f"CVODE stopped at t = {reached_t[0]:.6g}: {steps} steps did not reach the end"
@@ -135,9 +138,10 @@ class _Session:
         return MEANINGS.get(words, words)
 
 
+SINGULAR = "the motion may be singular here"
 MEANINGS = {
-    "CV_ERR_FAILURE": "the error test failed however small the step; the motion may be singular here",
-    "CV_CONV_FAILURE": "Newton's method failed however small the step; the motion may be singular here",
+    "CV_ERR_FAILURE": f"the error test failed however small the step; {SINGULAR}",
+    "CV_CONV_FAILURE": f"Newton's method failed however small the step; {SINGULAR}",
     "CV_RHSFUNC_FAIL": "the rate could not be evaluated",
     "CV_FIRST_RHSFUNC_ERR": "the rate is not finite at the start",
     "CV_REPTD_RHSFUNC_ERR": "the rate is not finite however small the step",

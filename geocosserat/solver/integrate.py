@@ -41,6 +41,10 @@ def integrate(
         raise ValueError(f"expected a method out of {', '.join(METHODS)}, found {method!r}")
     if not np.all(np.isfinite(start)):
         raise ValueError("expected a finite initial state, found infinities or NaN; check the start of the scene")
+    rate = np.empty_like(start)
+    kernel.rate(float(times[0]), start, rate)
+    if not np.all(np.isfinite(rate)):
+        return Trajectory(times[:1].copy(), start[None].copy(), 1, 0, 0, False, "the rate is not finite at the start")
     tolerance = np.broadcast_to(np.asarray(atol, dtype=float), start.shape).copy()
     if method != "cvode":
         return _integrator("scipy_methods", method)(kernel, start, times, rtol, tolerance, progress, frame)

@@ -12,7 +12,7 @@ from scipy.integrate import BDF, LSODA, OdeSolver, Radau
 
 from geocosserat.kernel.contract import Array, Kernel
 from geocosserat.solver.counted import Counted
-from geocosserat.solver.settings import STEP_LIMIT
+from geocosserat.solver.settings import STEP_LIMIT, stands_still
 from geocosserat.solver.trajectory import Frame, Progress, Trajectory
 
 
@@ -28,18 +28,32 @@ def _integrate(
 ) -> Trajectory:
     """Integrates from times[0] through all of `times`; see `integrate`."""
     counted = Counted(kernel)
-    solver = method(_fresh(counted), times[0], start.copy(), times[-1], rtol=rtol, atol=atol, jac=counted.jacobian)
     states = np.empty((len(times), kernel.size))
     states[0] = start
     done, steps, reason = 1, 0, ""
+    try:
+        solver = method(_fresh(counted), times[0], start.copy(), times[-1], rtol=rtol, atol=atol, jac=counted.jacobian)
+    except (ArithmeticError, np.linalg.LinAlgError) as error:
+        return Trajectory(times[:1].copy(), states[:1], counted.rates, counted.jacobians, 0, False, str(error))
     while solver.status == "running" and done < len(times):
         if steps == STEP_LIMIT:
             reason = f"{method.__name__} stopped at t = {solver.t:.6g}: {STEP_LIMIT} steps did not reach the end"
             break
-        message = solver.step()
+        try:
+            message = solver.step()
+        except (ArithmeticError, np.linalg.LinAlgError) as error:
+            reason = f"{method.__name__} stopped at t = {solver.t:.6g}: {error}"
+            break
         steps += 1
         if solver.status == "failed":
             reason = f"{method.__name__} stopped at t = {solver.t:.6g}: {message}"
+            break
+        # LSODA looks for neither
+        if not np.all(np.isfinite(solver.y)):
+            reason = f"{method.__name__} returned values that are not finite at t = {solver.t:.6g}"
+            break
+        if solver.status == "running" and stands_still(solver.t_old, solver.t):
+            reason = f"{method.__name__} stopped at t = {solver.t:.6g}: its steps go nowhere"
             break
         interpolant = None
         while done < len(times) and times[done] <= solver.t:

@@ -31,6 +31,7 @@ int CVodeInit(void *cvode, void *rate, double t, void *y);
 int CVodeSVtolerances(void *cvode, double rtol, void *atol);
 int CVodeSetUserData(void *cvode, void *data);
 int CVodeSetMaxNumSteps(void *cvode, long steps);
+int CVodeSetMaxHnilWarns(void *cvode, int count);
 int CVodeSetStopTime(void *cvode, double t);
 int CVodeSetLinearSolver(void *cvode, void *solver, void *matrix);
 int CVodeSetJacFn(void *cvode, void *jacobian);

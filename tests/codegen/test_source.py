@@ -61,8 +61,8 @@ def test_a_kernel_says_what_it_is(name: str) -> None:
         assert "do not edit" in head
         for place in ("uniform", "point", "node"):
             assert f"{place:<10} {', '.join(s.signature[place]) or 'none'}" in head
-        counts = s.signature["operations"]
-        assert f"stress {counts['stress']}, strain rate {counts['strain_rate']}; at a node: {counts['velocity']}" in head
+        n = s.signature["operations"]
+        assert f"stress {n['stress']}, strain rate {n['strain_rate']}; at a node: {n['velocity']}" in head
 
 
 def test_pruning_is_seen_in_the_operations() -> None:
@@ -106,7 +106,10 @@ def test_what_a_scene_does_not_name_leaves_no_trace(name: str) -> None:
 
 @pytest.mark.parametrize(
     "title",
-    ['end */ int main; /*', '""" + exit() + """', "back\\", "\\N{BULLET} \\x", "{{ title }} {% raw %}", "a /* b", "??/", '"', "ünïcode ∂"],
+    [
+        "end */ int main; /*", '""" + exit() + """', "back\\", "\\N{BULLET} \\x", "{{ title }} {% raw %}", "a /* b",
+        "??/", '"', "ünïcode ∂",
+    ],
 )  # fmt: skip
 def test_no_title_gets_out_of_its_comment(title: str, tmp_path: Path, c_compiler: str) -> None:
     """A title is text: it ends no comment, starts no statement and breaks no file."""
@@ -161,8 +164,9 @@ def test_a_missing_key_is_an_error() -> None:
 @pytest.mark.parametrize("name", ALL)
 def test_the_numpy_kernel_imports_numpy_only(name: str) -> None:
     """Whoever takes it away needs nothing else."""
-    imports = [node for node in ast.walk(ast.parse(source(name).numpy)) if isinstance(node, ast.Import | ast.ImportFrom)]
-    assert [ast.unparse(node) for node in imports] == ["import numpy as np"]
+    nodes = ast.walk(ast.parse(source(name).numpy))
+    imports = [ast.unparse(node) for node in nodes if isinstance(node, ast.Import | ast.ImportFrom)]
+    assert imports == ["import numpy as np"]
 
 
 # C
@@ -175,7 +179,7 @@ def test_the_c_kernel_includes_the_standard_library_only(name: str) -> None:
 
 
 def test_every_kernel_compiles_without_a_warning_at_every_kind_of_degree(tmp_path: Path, c_compiler: str) -> None:
-    """C99, -Wall -Wextra -Werror: shipped ones and the whole cast, for degree 1, 2 and 8; with the optimiser's warnings."""
+    """C99, -Wall -Wextra -Werror, shipped ones and the whole cast, for degree 1, 2 and 8; the optimiser's warnings too."""
 
     def check(name: str, degree: int) -> str:
         path = tmp_path / f"{ALL.index(name)}.c"
@@ -204,12 +208,14 @@ LOOPS = {
     1: {"stresses": "i < Q", "move": "n < N", "strain_rates": "i < Q"},
     8: {"stresses": "i < Q", "move": "n < N", "strain_rates": ""},
 }
-"""What the heads of these loops contain. Slopes of degree 8 are short sums that any of several loops may be turned into."""
+"""What the heads of these loops contain; slopes of degree 8 are short sums, and any loop of theirs will do."""
 
 
 @pytest.mark.parametrize("degree", LOOPS)
 @pytest.mark.parametrize("name", ["planar plain", "spatial plain", "planar drifting", "spatial hung"])
-def test_the_loops_over_points_and_nodes_are_vectorised(name: str, degree: int, tmp_path: Path, c_compiler: str) -> None:
+def test_the_loops_over_points_and_nodes_are_vectorised(
+    name: str, degree: int, tmp_path: Path, c_compiler: str
+) -> None:
     """As gcc reports it under the flags of the kernels: the loop over all points or nodes, not some loop inside it."""
     version = subprocess.run([c_compiler, "--version"], capture_output=True, text=True).stdout
     if "Free Software Foundation" not in version:

@@ -356,7 +356,7 @@ class Rod:
         return total
 
     def move(self, t: float, y: Array) -> tuple[Array, Array, Array]:
-        """Turn (6, Q), applied wrenches (6, N) in the moving frame, and the twist (6, N) that they and the stress drive."""
+        """Turn (6, Q), applied wrenches (6, N) in the moving frame, and the twist (6, N) they and the stress drive."""
         y = y if y.dtype == object else numbers(y)
         d, Q = self.d, self.Q
         E, pose = y[: d * Q].reshape(d, Q), y[d * Q : d * Q + self.carried]

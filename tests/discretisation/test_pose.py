@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -62,7 +63,7 @@ def test_element_ends_converge_with_order_2p(degree: int, turn: Array) -> None:
 def test_one_element_converges_spectrally(turn: Array) -> None:
     """Three more degrees are worth at least two digits, down to round-off."""
     errors = [pose_error(make_mesh(LENGTH, 1, p), turn, np.s_[:]) for p in (3, 6, 9, 12, 15, 18)]
-    assert all(b < 0.01 * a or b < 1e-14 for a, b in zip(errors[:-1], errors[1:], strict=True))
+    assert all(b < 0.01 * a or b < 1e-14 for a, b in pairwise(errors))
     assert errors[-1] < 1e-14
 
 

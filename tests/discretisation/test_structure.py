@@ -54,7 +54,7 @@ def test_a_parameter_that_happens_to_be_zero_keeps_its_coefficient() -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_every_coefficient_stands_where_it_varies(name: str) -> None:
-    """uniform without u and t, point or node with u, time with t; entries of the law at points, loads of nodes at nodes."""
+    """Uniform without u and t, time with t; with u entries of the law at points, the weight at nodes."""
     found = structure_of(scene(name).model)
     for c in found.coefficients:
         if c.expression is None:

@@ -36,7 +36,7 @@ def test_the_rate_is_that_of_the_semi_discrete_rod(case: Case) -> None:
 
 @ids
 def test_the_jacobian_is_the_exact_derivative_of_the_rate(case: Case) -> None:
-    """In random directions, row by row to round-off of the row; nothing depends on the energies, whose rows are zero."""
+    """In random directions, row by row to round-off; nothing depends on the energies, whose rows are left zero."""
     for seed in (1, 2):
         y = state(case, seed)
         direction, wanted = reference_derivative(*case[:3], seed)

@@ -7,6 +7,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -57,7 +58,9 @@ def test_a_source_is_compiled_once_for_each_degree(own: Path, c_compiler: str) -
     assert {path.name for path in own.iterdir()} == {path.name for path in (first, *others)}
 
 
-def test_another_compiler_or_machine_makes_another_library(own: Path, c_compiler: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_another_compiler_or_machine_makes_another_library(
+    own: Path, c_compiler: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """A cache on a shared home serves every machine its own code."""
     first = compile_c(SOURCE, 1)
     monkeypatch.setattr(compiling, "_machine", lambda: "another machine")
@@ -71,11 +74,13 @@ def test_no_compiler_is_said_in_words(own: Path, monkeypatch: pytest.MonkeyPatch
     for tool in ("", "no-such-compiler-anywhere"):
         choose(monkeypatch, tool)
         assert compiler() is None
-        with pytest.raises(CompileError, match="expected a C compiler, found none.*; install one, or use the numpy"):
+        with pytest.raises(CompileError, match=r"expected a C compiler, found none.*; install one, or use the numpy"):
             compile_c(SOURCE, 1)
 
 
-def test_a_compiler_is_looked_for_where_none_is_named(own: Path, c_compiler: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_compiler_is_looked_for_where_none_is_named(
+    own: Path, c_compiler: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """cc, gcc or clang, in this order."""
     choose(monkeypatch, None)
     assert compiler() is not None
@@ -126,7 +131,7 @@ def test_a_compiler_that_hangs_is_given_up(own: Path, monkeypatch: pytest.Monkey
     """After a while that the message names."""
     choose(monkeypatch, script(own.parent / "slow-cc", "#!/bin/sh\nexec sleep 60\n"))
     monkeypatch.setattr(compiling, "PATIENCE", 0.2)
-    with pytest.raises(CompileError, match="slow-cc .*0.2 s"):
+    with pytest.raises(CompileError, match=r"slow-cc .*0\.2 s"):
         compile_c(SOURCE, 1)
 
 
@@ -174,7 +179,7 @@ def test_a_library_that_cannot_be_loaded_is_said_in_words(
 
     monkeypatch.setattr("geocosserat.kernel.load.NativeRod", refused)
     r = discretise(changed("planar plain"), 2, 1)
-    with pytest.raises(CompileError, match="can be loaded: failed to map segment.*; set GEOCOSSERAT_CACHE"):
+    with pytest.raises(CompileError, match=r"can be loaded: failed to map segment.*; set GEOCOSSERAT_CACHE"):
         load(kernel_text(r.structure), r, "c")
     assert run(changed("planar plain", run=SHORT)).solution.backend == "numpy"
 
@@ -182,6 +187,7 @@ def test_a_library_that_cannot_be_loaded_is_said_in_words(
 RACE = """
 import sys
 from pathlib import Path
+from typing import Any
 from geocosserat.kernel.compile import compile_c
 print(compile_c(Path(sys.argv[1]).read_text(), 2).name)
 """
@@ -191,10 +197,8 @@ def test_processes_that_compile_the_same_kernel_at_once_all_succeed(own: Path, c
     """Four at a time, one library, no litter."""
     source = ROOT / "generated" / "planar_clamped_free.c"
     command = [sys.executable, "-c", RACE, str(source)]
-    racing = [
-        subprocess.Popen(command, cwd=ROOT, env=dict(os.environ), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        for _ in range(4)
-    ]
+    pipes: dict[str, Any] = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    racing = [subprocess.Popen(command, cwd=ROOT, env=dict(os.environ), **pipes) for _ in range(4)]
     names = set()
     for process in racing:
         out, errors = process.communicate(timeout=100)

@@ -65,11 +65,11 @@ def test_the_cantilever_of_the_design_ends_where_it_was_measured() -> None:
     np.testing.assert_allclose(tip("1e4", "0.01", 1, 12), TIP, rtol=0, atol=2e-9)
 
 
-@pytest.mark.parametrize(("degree", "elements", "order"), [(1, 12, 2), (2, 4, 4)])
-@pytest.mark.parametrize("kappa", ["1e2", "1e6"])
+@pytest.mark.parametrize(("degree", "elements", "order"), [(1, 12, 2), (2, 8, 4)])
+@pytest.mark.parametrize("kappa", STIFF)
 def test_the_tip_converges_with_order_2p_at_any_stiffness(kappa: str, degree: int, elements: int, order: int) -> None:
     """Twice the elements, a fourth or a sixteenth of the error."""
     coarse, fine = (
         np.linalg.norm(tip(kappa, "1/kappa", n, degree) - converged(kappa)) for n in (elements, 2 * elements)
     )
-    assert 0.75 * 2**order < coarse / fine < 1.35 * 2**order
+    assert 0.7 * 2**order < coarse / fine < 1.35 * 2**order

@@ -1,0 +1,169 @@
+"""A spatial rod in a viscous fluid, clamped at u = 0: positions and quaternions in time, to about 1e-10.
+
+The balances of force and of moment of a piece of rod, in the world, for n = R F and m = R M:
+
+    h = R^T r',  Pi from R' = R Pi^,  (F, M) = K ((h, Pi) - E0)
+    v = R^T r_t, Omega from R_t = R Omega^,  Gamma (v, Omega) = R^T (n' + weight, m' + r' x n)
+
+with n, m given at the free end. The unknowns are r and the quaternion of R at Chebyshev points; neither strains nor
+a Lie bracket occurs. The free end has no rate: its seven unknowns obey (F, M) = load and |q| = 1, so the system is
+differential-algebraic (index 1), and Radau IIA collocation of 6 stages integrates it as it stands, on growing steps
+and with the Jacobian (by complex steps) of the start of each. Sources: E. Hairer and G. Wanner, *Solving Ordinary
+Differential Equations II*, sections IV.8 and VI.1; L. N. Trefethen, *Spectral Methods in MATLAB*.
+
+Dimensions: stiffness (force x 3, force x length^2 x 3); friction (force x time / length^2 x 3, force x time x 3).
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy.integrate import solve_ivp
+from scipy.spatial.transform import Rotation
+
+from tests.references import chebyshev
+from tests.references.relaxing_cantilever import STAGES, instants, radau
+
+Array = npt.NDArray[np.float64]
+Values = npt.NDArray[np.float64] | npt.NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
+class Rod:
+    """The coefficients, the loads and the start.
+
+    stiffness, friction (6, 6); reference (6,). force(t) (3,): dead, in world components, on the free end. weight (3,):
+    force per length, in the world. start(u) (6,): the turn at the start. position (3,), rotation (3, 3) of the clamp.
+    """
+
+    length: float
+    stiffness: Array
+    friction: Array
+    reference: Array
+    start: Callable[[float], npt.ArrayLike]
+    force: Callable[[float], npt.ArrayLike]
+    weight: npt.ArrayLike = (0.0, 0.0, 0.0)
+    position: npt.ArrayLike = (0.0, 0.0, 0.0)
+    rotation: npt.ArrayLike = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+
+@dataclass(frozen=True)
+class Shape:
+    """The rod at the points u: position (points, 3), rotation (points, 3, 3), turn E (points, 6)."""
+
+    u: Array
+    position: Array
+    rotation: Array
+    turn: Array
+
+
+class Collocation:
+    """mass * dy/dt = residual(t, y) for y (..., degree, 7): position and quaternion at all points but the clamp."""
+
+    def __init__(self, rod: Rod, degree: int) -> None:
+        self.rod, self.u = rod, chebyshev.points(degree, rod.length)
+        self.slope = chebyshev.derivative(degree, rod.length)
+        clamp = np.roll(Rotation.from_matrix(np.asarray(rod.rotation)).as_quat(), 1)
+        self.clamp = np.concatenate([np.asarray(rod.position, dtype=float), clamp])
+        self.mobility = np.linalg.inv(rod.friction)
+        self.mass = np.ones((degree, 7))
+        self.mass[-1] = 0.0
+
+    def begin(self) -> Array:
+        """phi' = phi E from the clamp."""
+
+        def rate(u: float, y: Array) -> Array:
+            turn = np.asarray(self.rod.start(u), dtype=float)
+            return np.concatenate([rotated(y[3:], turn[:3]), 0.5 * product(y[3:], turn[3:])])
+
+        found = solve_ivp(
+            rate, (0.0, self.rod.length), self.clamp, method="DOP853", rtol=1e-13, atol=1e-14, t_eval=self.u[1:]
+        )
+        return np.asarray(found.y.T)
+
+    def fields(self, y: Values) -> tuple[Values, Values, Values, Values]:
+        """At all points: positions and quaternions (..., 7), their slopes, turn and stress (..., 6)."""
+        clamp = np.broadcast_to(self.clamp, (*y.shape[:-2], 1, 7))
+        whole = np.concatenate([clamp, y], axis=-2)
+        slopes = self.slope @ whole
+        q, dq = whole[..., 3:], slopes[..., 3:]
+        bend = 2.0 * product(conjugate(q), dq)[..., 1:] / np.sum(q * q, axis=-1, keepdims=True)
+        turn = np.concatenate([rotated(conjugate(q), slopes[..., :3]), bend], axis=-1)
+        return whole, slopes, turn, (turn - self.rod.reference) @ self.rod.stiffness
+
+    def residual(self, t: float, y: Values) -> Values:
+        """Rates of all points but the free end, and what is left of its conditions."""
+        whole, slopes, _, stress = self.fields(y)
+        q = whole[..., 3:]
+        n, m = rotated(q, stress[..., :3]), rotated(q, stress[..., 3:])
+        pull = self.slope @ n + np.asarray(self.rod.weight)
+        couple = self.slope @ m + np.cross(slopes[..., :3], n)
+        back = conjugate(q)
+        twist = np.concatenate([rotated(back, pull), rotated(back, couple)], axis=-1) @ self.mobility
+        rates = np.concatenate([rotated(q, twist[..., :3]), 0.5 * product(q, twist[..., 3:])], axis=-1)[..., 1:, :]
+        missing = n[..., -1, :] - np.asarray(self.rod.force(t))
+        norm = np.sum(q[..., -1, :] ** 2, axis=-1, keepdims=True) - 1.0
+        rates[..., -1, :] = np.concatenate([missing, m[..., -1, :], norm], axis=-1)
+        return rates
+
+    def jacobian(self, t: float, y: Array) -> Array:
+        """d residual / dy, (7 degree, 7 degree), by complex steps."""
+        size = y.size
+        steps = y + 1e-30j * np.eye(size).reshape(size, *y.shape)
+        return np.asarray(self.residual(t, steps).imag.reshape(size, size).T / 1e-30)
+
+
+def conjugate(q: Values) -> Values:
+    """The quaternion of the inverse rotation, unless it has a length."""
+    return q * np.array([1.0, -1.0, -1.0, -1.0])
+
+
+def product(a: Values, b: Values) -> Values:
+    """Quaternion product; b may be a vector (..., 3)."""
+    if b.shape[-1] == 3:
+        b = np.concatenate([np.zeros_like(b[..., :1]), b], axis=-1)
+    s, v, p, w = a[..., :1], a[..., 1:], b[..., :1], b[..., 1:]
+    scalar = s * p - np.sum(v * w, axis=-1, keepdims=True)
+    return np.concatenate([scalar, s * w + p * v + np.cross(v, w)], axis=-1)
+
+
+def rotated(q: Values, x: Values) -> Values:
+    """The vector x turned by q, whatever the length of q."""
+    return product(product(q, x), conjugate(q))[..., 1:] / np.sum(q * q, axis=-1, keepdims=True)
+
+
+def solve(
+    rod: Rod, until: float, degree: int = 18, first: float = 1e-5, growth: float = 2.0, longest: float = 1 / 24
+) -> Shape:
+    """The rod at the time `until`. Time steps: `first` and `longest` as fractions of `until`.
+
+    Raises ArithmeticError if Newton's method fails: the steps are then too long.
+    """
+    equations = Collocation(rod, degree)
+    state = equations.begin()
+    size, mass = state.size, equations.mass
+    nodes, matrix = radau(STAGES)
+    factors, vectors = np.linalg.eig(matrix)
+    inverse_vectors = np.linalg.inv(vectors)
+    t = 0.0
+    for end in instants(until, first * until, growth, longest * until)[1:]:
+        step = float(end) - t
+        jacobian = equations.jacobian(t, state)
+        systems = np.linalg.inv(np.diag(mass.ravel()) - step * factors[:, None, None] * jacobian)
+        stages = np.tile(state, (STAGES, 1, 1))
+        for _ in range(200):
+            rates = np.stack([equations.residual(t + step * c, y) for c, y in zip(nodes, stages, strict=True)])
+            left = mass * (stages - state) - step * np.einsum("ij,j...->i...", matrix, rates)
+            change = (
+                vectors @ np.einsum("sij,sj->si", systems, inverse_vectors @ left.reshape(STAGES, size))
+            ).real.reshape(stages.shape)
+            stages = stages - change
+            if np.abs(change).max() < 1e-10 * rod.length:
+                break
+        else:
+            raise ArithmeticError(f"Newton's method left {np.abs(change).max():.1e}; expected shorter time steps")
+        state, t = stages[-1], float(end)
+    whole, _, turn, _ = equations.fields(state)
+    rotation = Rotation.from_quat(np.roll(whole[:, 3:], -1, axis=1)).as_matrix()
+    return Shape(equations.u, whole[:, :3], rotation, turn)
