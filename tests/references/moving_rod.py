@@ -5,15 +5,17 @@ The balances of force and of moment of a piece of rod, in the world, for n = R F
     h = R^T r',  Pi from R' = R Pi^,  (F, M) = K ((h, Pi) - E0)
     v = R^T r_t, Omega from R_t = R Omega^,  Gamma (v, Omega) = R^T (n' + weight, m' + r' x n)
 
-with n, m given at the free end. The unknowns are r and the quaternion of R at Chebyshev points; neither strains nor
-a Lie bracket occurs. The free end has no rate: its seven unknowns obey (F, M) = load and |q| = 1, so the system is
+with n, m given at the free end. The unknowns at Chebyshev points are the quaternion of R and w = r - integral of
+e_1, what stretch and shear add to the unstretched rod: the stiff part is linear in w. Neither strains nor a Lie
+bracket is integrated. The free end has no rate: its seven unknowns obey (F, M) = load and |q| = 1, so the system is
 differential-algebraic (index 1), and Radau IIA collocation of 6 stages integrates it as it stands, on growing steps
-and with the Jacobian (by complex steps) of the start of each. Sources: E. Hairer and G. Wanner, *Solving Ordinary
+and with the Jacobians (by complex steps) of the start of each. Sources: E. Hairer and G. Wanner, *Solving Ordinary
 Differential Equations II*, sections IV.8 and VI.1; L. N. Trefethen, *Spectral Methods in MATLAB*.
 
 Dimensions: stiffness (force x 3, force x length^2 x 3); friction (force x time / length^2 x 3, force x time x 3).
 """
 
+import itertools
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -26,6 +28,7 @@ from tests.references import chebyshev
 from tests.references.relaxing_cantilever import STAGES, instants, radau
 
 Array = npt.NDArray[np.float64]
+FIRST = np.array([1.0, 0.0, 0.0])
 Values = npt.NDArray[np.float64] | npt.NDArray[np.complex128]
 
 
@@ -59,46 +62,57 @@ class Shape:
 
 
 class Collocation:
-    """mass * dy/dt = residual(t, y) for y (..., degree, 7): position and quaternion at all points but the clamp."""
+    """d moved(y) / dt = residual(t, y) for y (..., degree, 7): w and quaternion at all points but the clamp."""
 
     def __init__(self, rod: Rod, degree: int) -> None:
         self.rod, self.u = rod, chebyshev.points(degree, rod.length)
         self.slope = chebyshev.derivative(degree, rod.length)
-        clamp = np.roll(Rotation.from_matrix(np.asarray(rod.rotation)).as_quat(), 1)
-        self.clamp = np.concatenate([np.asarray(rod.position, dtype=float), clamp])
+        self.integral = chebyshev.integral(degree, rod.length, 0)
+        self.clamp = np.roll(Rotation.from_matrix(np.asarray(rod.rotation)).as_quat(), 1)
         self.mobility = np.linalg.inv(rod.friction)
-        self.mass = np.ones((degree, 7))
-        self.mass[-1] = 0.0
 
     def begin(self) -> Array:
-        """phi' = phi E from the clamp."""
+        """phi' = phi E from the clamp, for w and q."""
 
         def rate(u: float, y: Array) -> Array:
             turn = np.asarray(self.rod.start(u), dtype=float)
-            return np.concatenate([rotated(y[3:], turn[:3]), 0.5 * product(y[3:], turn[3:])])
+            return np.concatenate([rotated(y[3:], turn[:3] - FIRST), 0.5 * product(y[3:], turn[3:])])
 
-        found = solve_ivp(
-            rate, (0.0, self.rod.length), self.clamp, method="DOP853", rtol=1e-13, atol=1e-14, t_eval=self.u[1:]
-        )
-        return np.asarray(found.y.T)
+        clamp, states = np.concatenate([np.zeros(3), self.clamp]), []
+        for before, after in itertools.pairwise(self.u):  # to each point, not interpolated
+            clamp = solve_ivp(rate, (before, after), clamp, method="DOP853", rtol=1e-13, atol=1e-14).y[:, -1]
+            states.append(clamp)
+        return np.array(states)
 
-    def fields(self, y: Values) -> tuple[Values, Values, Values, Values]:
-        """At all points: positions and quaternions (..., 7), their slopes, turn and stress (..., 6)."""
-        clamp = np.broadcast_to(self.clamp, (*y.shape[:-2], 1, 7))
-        whole = np.concatenate([clamp, y], axis=-2)
+    def moved(self, y: Values) -> Values:
+        """What the rates are the rates of: r - r(clamp) and q; nothing at the free end."""
+        whole = self.whole(y)
+        along = self.integral @ rotated(whole[..., 3:], FIRST)
+        result = np.concatenate([whole[..., :3] + along, whole[..., 3:]], axis=-1)[..., 1:, :]
+        result[..., -1, :] = 0.0
+        return result
+
+    def whole(self, y: Values) -> Values:
+        """With the clamp in front."""
+        clamp = np.concatenate([np.zeros(3), self.clamp])
+        return np.concatenate([np.broadcast_to(clamp, (*y.shape[:-2], 1, 7)), y], axis=-2)
+
+    def fields(self, y: Values) -> tuple[Values, Values, Values]:
+        """At all points: quaternions (..., 4), turn and stress (..., 6)."""
+        whole = self.whole(y)
         slopes = self.slope @ whole
         q, dq = whole[..., 3:], slopes[..., 3:]
         bend = 2.0 * product(conjugate(q), dq)[..., 1:] / np.sum(q * q, axis=-1, keepdims=True)
-        turn = np.concatenate([rotated(conjugate(q), slopes[..., :3]), bend], axis=-1)
-        return whole, slopes, turn, (turn - self.rod.reference) @ self.rod.stiffness
+        stretch = rotated(conjugate(q), slopes[..., :3])
+        excess = np.concatenate([stretch + (FIRST - self.rod.reference[:3]), bend - self.rod.reference[3:]], axis=-1)
+        return q, np.concatenate([stretch + FIRST, bend], axis=-1), excess @ self.rod.stiffness
 
     def residual(self, t: float, y: Values) -> Values:
         """Rates of all points but the free end, and what is left of its conditions."""
-        whole, slopes, _, stress = self.fields(y)
-        q = whole[..., 3:]
+        q, turn, stress = self.fields(y)
         n, m = rotated(q, stress[..., :3]), rotated(q, stress[..., 3:])
         pull = self.slope @ n + np.asarray(self.rod.weight)
-        couple = self.slope @ m + np.cross(slopes[..., :3], n)
+        couple = self.slope @ m + np.cross(rotated(q, turn[..., :3]), n)
         back = conjugate(q)
         twist = np.concatenate([rotated(back, pull), rotated(back, couple)], axis=-1) @ self.mobility
         rates = np.concatenate([rotated(q, twist[..., :3]), 0.5 * product(q, twist[..., 3:])], axis=-1)[..., 1:, :]
@@ -107,11 +121,14 @@ class Collocation:
         rates[..., -1, :] = np.concatenate([missing, m[..., -1, :], norm], axis=-1)
         return rates
 
-    def jacobian(self, t: float, y: Array) -> Array:
-        """d residual / dy, (7 degree, 7 degree), by complex steps."""
+    def jacobians(self, t: float, y: Array) -> tuple[Array, Array]:
+        """d moved / dy and d residual / dy, (7 degree, 7 degree) each, by complex steps."""
         size = y.size
         steps = y + 1e-30j * np.eye(size).reshape(size, *y.shape)
-        return np.asarray(self.residual(t, steps).imag.reshape(size, size).T / 1e-30)
+        moved, residual = (
+            values.imag.reshape(size, size).T / 1e-30 for values in (self.moved(steps), self.residual(t, steps))
+        )
+        return np.asarray(moved), np.asarray(residual)
 
 
 def conjugate(q: Values) -> Values:
@@ -142,19 +159,19 @@ def solve(
     """
     equations = Collocation(rod, degree)
     state = equations.begin()
-    size, mass = state.size, equations.mass
+    size = state.size
     nodes, matrix = radau(STAGES)
     factors, vectors = np.linalg.eig(matrix)
     inverse_vectors = np.linalg.inv(vectors)
     t = 0.0
     for end in instants(until, first * until, growth, longest * until)[1:]:
         step = float(end) - t
-        jacobian = equations.jacobian(t, state)
-        systems = np.linalg.inv(np.diag(mass.ravel()) - step * factors[:, None, None] * jacobian)
+        mass, jacobian = equations.jacobians(t, state)
+        systems = np.linalg.inv(mass - step * factors[:, None, None] * jacobian)
         stages = np.tile(state, (STAGES, 1, 1))
-        for _ in range(200):
+        for _ in range(60):
             rates = np.stack([equations.residual(t + step * c, y) for c, y in zip(nodes, stages, strict=True)])
-            left = mass * (stages - state) - step * np.einsum("ij,j...->i...", matrix, rates)
+            left = equations.moved(stages) - equations.moved(state) - step * np.einsum("ij,j...->i...", matrix, rates)
             change = (
                 vectors @ np.einsum("sij,sj->si", systems, inverse_vectors @ left.reshape(STAGES, size))
             ).real.reshape(stages.shape)
@@ -164,6 +181,7 @@ def solve(
         else:
             raise ArithmeticError(f"Newton's method left {np.abs(change).max():.1e}; expected shorter time steps")
         state, t = stages[-1], float(end)
-    whole, _, turn, _ = equations.fields(state)
-    rotation = Rotation.from_quat(np.roll(whole[:, 3:], -1, axis=1)).as_matrix()
-    return Shape(equations.u, whole[:, :3], rotation, turn)
+    q, turn, _ = equations.fields(state)
+    rotation = Rotation.from_quat(np.roll(q, -1, axis=1)).as_matrix()
+    along = equations.whole(state)[:, :3] + equations.integral @ rotation[:, :, 0]
+    return Shape(equations.u, np.asarray(rod.position) + along, rotation, turn)
