@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -14,7 +15,7 @@ ROOT = Path(__file__).parents[1]
 
 @pytest.fixture(scope="session", autouse=True)
 def cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
-    """The cache of this test session: kernels of earlier versions are never used, and the user's own stay untouched."""
+    """This session's cache: kernels of earlier versions are never used, and the user's own stay untouched."""
     folder = tmp_path_factory.mktemp("cache")
     folder.chmod(0o700)
     with pytest.MonkeyPatch.context() as patch:
@@ -35,3 +36,17 @@ def c_compiler() -> str:
     if tool is None:
         pytest.skip("no C compiler on the path, or CC is set to none")
     return tool
+
+
+@pytest.fixture
+def patience() -> Iterator[None]:
+    """Ends a test that would go on for ever; a hundred times what it needs, so it judges no speed."""
+
+    def give_up(*_: object) -> None:
+        raise TimeoutError("expected an answer at once, found none within a minute")
+
+    before = signal.signal(signal.SIGALRM, give_up)
+    signal.alarm(60)
+    yield
+    signal.alarm(0)
+    signal.signal(signal.SIGALRM, before)

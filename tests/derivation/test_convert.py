@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 
 import pytest
 import sympy as sp
@@ -101,19 +100,17 @@ def test_what_is_infinite_or_not_real_is_refused(text: str) -> None:
         "exp(-1e12*log(3))",
     ],
 )
+@pytest.mark.usefixtures("patience")
 def test_a_number_out_of_range_is_refused_at_once(text: str) -> None:
     """Exact arithmetic would compute it to its last digit."""
-    started = time.process_time()
     with pytest.raises(ExpressionError, match=r"range of doubles, found .*smaller exponent"):
         to_sympy(parse(text, NAMES))
-    assert time.process_time() - started < 1.0
 
 
 @pytest.mark.parametrize(
     "text", ["(1 + u)**1000000", "u**0.5", "2**0.333", "exp(-1000000)", "kappa**(1e9)", "sin(1e300)"]
 )
+@pytest.mark.usefixtures("patience")
 def test_large_powers_of_names_are_left_alone(text: str) -> None:
     """They are no trouble unless multiplied out, and nothing does that."""
-    started = time.process_time()
     assert to_sympy(parse(text, NAMES)) != 0
-    assert time.process_time() - started < 1.0

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import time
-
 import pytest
 import sympy as sp
 from hypothesis import given, settings
@@ -57,14 +55,13 @@ def test_products_are_merged_across_brackets() -> None:
     assert terms(A * (H - 1) * V - A * H * V) == {V: -A}
 
 
+@pytest.mark.usefixtures("patience")
 @pytest.mark.parametrize("power", [100, 10**6])
 def test_a_high_power_in_a_coefficient_costs_nothing(power: int) -> None:
     """Coefficients are judged by their value at two points, never expanded."""
-    started = time.process_time()
     c = (1 + U) ** power
     assert terms(c * H - c * V + (A - A * T) * M)[H] == c
     assert terms((c + A) * H - c * H) == {H: A}
-    assert time.process_time() - started < 1.0
 
 
 def test_a_hidden_zero_vanishes_and_a_small_number_does_not() -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import pickle
-import time
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +15,6 @@ from geocosserat.model.reading import read
 from geocosserat.model.scene import load_scene
 from geocosserat.model.toml_text import to_toml
 
-QUICKLY = 3.0  # seconds of this process, generous for a slow machine
 SCENE = """\
 title = "a scene"
 [rod]
@@ -99,14 +97,13 @@ def test_files_of_other_editors_are_read(tmp_path: Path, content: str) -> None:
     ],
     ids=range(25),
 )
+@pytest.mark.usefixtures("patience")
 def test_a_file_that_is_no_scene_is_refused_at_once(tmp_path: Path, content: bytes, wording: str) -> None:
     """Wrong encoding, wrong syntax, wrong size, made to take forever: one short message, quickly."""
     file = tmp_path / "scene.toml"
     file.write_bytes(content)
-    begin = time.process_time()
     with pytest.raises(InputError, match=wording) as caught:
         load_scene(file)
-    assert time.process_time() - begin < QUICKLY
     assert len(str(caught.value)) < 800
     assert str(caught.value).isprintable()
 
