@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 from collections.abc import Iterator
 from pathlib import Path
@@ -15,9 +16,13 @@ ROOT = Path(__file__).parents[1]
 
 @pytest.fixture(scope="session", autouse=True)
 def cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
-    """This session's cache: kernels of earlier versions are never used, and the user's own stay untouched."""
-    folder = tmp_path_factory.mktemp("cache")
-    folder.chmod(0o700)
+    """This session's cache: kernels of earlier versions are never used, and the user's own stay untouched.
+
+    Worker processes share it: each kernel is generated and compiled once.
+    """
+    base = tmp_path_factory.getbasetemp()
+    folder = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "cache"
+    folder.mkdir(mode=0o700, exist_ok=True)
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("GEOCOSSERAT_CACHE", str(folder))
         yield folder

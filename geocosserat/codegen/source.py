@@ -113,10 +113,10 @@ class _Writer:
 
     def timed(self, along_nodes: bool, coordinate: str = "") -> list[tuple[str, str]]:
         """(name, code) of the time-dependent coefficients that do, or do not, vary along the nodes."""
-        printed = []
+        printed, varying = [], {"u", *self.slots["node"]}
         for c in self.structure.at("time"):
             assert c.expression is not None
-            if ("u" in symbols(c.expression)) == along_nodes:
+            if bool(varying & symbols(c.expression)) == along_nodes:
                 code = print_expression(c.expression, self.language, lambda s: coordinate if s == "u" else s)
                 printed.append((c.name, code))
         return printed

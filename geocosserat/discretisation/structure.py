@@ -13,7 +13,9 @@ from typing import Literal
 from geocosserat.algebra.groups import Group, group_of
 from geocosserat.model.expressions import (
     Binary,
+    Call,
     Expression,
+    Negate,
     Number,
     Symbol,
     constant,
@@ -114,6 +116,7 @@ class _Collector:
 
     def __init__(self) -> None:
         self.found: dict[str, Coefficient] = {}
+        self.steps: dict[Expression, str] = {}
 
     def add(self, name: str, expression: Expression, varying: Place) -> str:
         """The name to use for `expression`; literal zero and one need none."""
@@ -121,14 +124,32 @@ class _Collector:
             return ZERO
         used = symbols(expression)
         if "t" in used:
+            expression = self.sample_steps(expression, varying)
             # a prefix keeps the user's names apart from those of the kernel
-            renamed = {parameter: Symbol(f"p_{parameter}") for parameter in used - {"t", "u"}}
+            parameters = symbols(expression) - {"t", "u", *self.steps.values()}
+            renamed = {parameter: Symbol(f"p_{parameter}") for parameter in parameters}
             for parameter, symbol in sorted(renamed.items()):
                 self.found[symbol.name] = Coefficient(symbol.name, "uniform", Symbol(parameter))
             self.found[name] = Coefficient(name, "time", substitute(expression, renamed))
         else:
             self.found[name] = Coefficient(name, varying if "u" in used else "uniform", expression)
         return name
+
+    def sample_steps(self, e: Expression, varying: Place) -> Expression:
+        """`e` with its steps along the rod as coefficients: sampled from both sides of a node, like all else."""
+        match e:
+            case Call("heaviside", argument) if "u" in symbols(argument):
+                name = self.steps.setdefault(e, f"step_{len(self.steps) + 1}")
+                self.found[name] = Coefficient(name, varying, e)
+                return Symbol(name)
+            case Call(function, argument):
+                return Call(function, self.sample_steps(argument, varying))
+            case Negate(operand):
+                return Negate(self.sample_steps(operand, varying))
+            case Binary(operator, left, right):
+                return Binary(operator, self.sample_steps(left, varying), self.sample_steps(right, varying))
+            case _:
+                return e
 
     def symmetric(self, letter: str, matrix: Sequence[Sequence[Expression]]) -> Matrix:
         """Names of a symmetric matrix: both halves share a name."""

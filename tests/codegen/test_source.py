@@ -75,6 +75,17 @@ def test_pruning_is_seen_in_the_operations() -> None:
         assert counts[f"{motion} plain"]["stress"] < counts[f"{motion} everything"]["stress"]
 
 
+@pytest.mark.parametrize("name", NAMES)
+def test_the_operations_stated_are_those_written(name: str) -> None:
+    """Counted in the text of the stress; a sign at the head of a sum may be one more."""
+    s = source(name)
+    (found,) = (
+        node for node in ast.walk(ast.parse(s.numpy)) if isinstance(node, ast.FunctionDef) and node.name == "stresses"
+    )
+    written = sum(isinstance(node, ast.BinOp | ast.UnaryOp) for node in ast.walk(found))
+    assert 0 <= written - s.signature["operations"]["stress"] <= 2
+
+
 def test_printing_a_source_is_readable() -> None:
     """One line: which kernel, on which group, how much."""
     assert re.fullmatch(
@@ -179,7 +190,7 @@ def test_the_c_kernel_includes_the_standard_library_only(name: str) -> None:
 
 
 def test_every_kernel_compiles_without_a_warning_at_every_kind_of_degree(tmp_path: Path, c_compiler: str) -> None:
-    """C99, -Wall -Wextra -Werror, shipped ones and the whole cast, for degree 1, 2 and 8; the optimiser's warnings too."""
+    """C99, -Wall -Wextra -Werror, shipped ones and the whole cast, degrees 1, 2, 8, with the optimiser's warnings."""
 
     def check(name: str, degree: int) -> str:
         path = tmp_path / f"{ALL.index(name)}.c"

@@ -90,6 +90,8 @@ def test_a_jacobian_keeps_no_step_that_nothing_needs() -> None:
     tape = jacobian(record({"a": sp.exp(x) * y, "b": sp.sin(x * y) + sp.sin(x * y) ** 2}), (x,), "J")
     used = {s for _, e in (*tape.steps, *tape.outputs) for s in e.free_symbols}
     assert {name for name, _ in tape.steps} <= used
+    shared = jacobian(record({"a": (x * y + z) * z, "b": (x * y + z) * y}), (x,), "J")
+    assert shared.steps == ()  # the sum they share has the slope y; its value is not needed
     linear = jacobian(record({"a": 3 * x + y}), (x, y), "J")
     assert linear == Tape((), (("J_1_1", sp.Integer(3)), ("J_1_2", sp.Integer(1))))
 

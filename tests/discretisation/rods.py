@@ -123,7 +123,7 @@ def cast(motion: str) -> dict[str, dict[str, Any]]:
             STEPPED[motion],
             parameters={"middle": 0.65},
             ends={"left": CLAMPED, "right": CLAMPED},
-            effects=[weight(motion, "0.3*heaviside(u - middle)", "-1 + cos(t)*u", 0.0)],
+            effects=[weight(motion, "0.3*heaviside(u - middle)", "(cos(t)*u - 1)*(1 + heaviside(u - middle))", 0.0)],
         ),
         "everything": _rod(
             motion,

@@ -58,7 +58,16 @@ def test_a_stepped_weight_adds_up_to_the_force_it_is() -> None:
     heavy = CAST["planar plain"] | {"effects": [weight("planar", 0.0, "-2*heaviside(u - 0.4)")]}
     r = discretise(load_scene(heavy), 2, 3)
     assert r.mesh.half[0] != pytest.approx(r.mesh.half[1])
-    assert r.mesh.mass @ named(r, "weight_y") == pytest.approx(-2 * (1.3 - 0.4), rel=1e-14)
+    assert r.mesh.mass @ named(r, "weight_y") == pytest.approx(-2 * (1.3 - 0.4), rel=1e-13)
+
+
+def test_a_step_in_a_weight_that_changes_in_time_is_sampled_like_any_other() -> None:
+    """Once for all equal steps; what is left for the kernel to evaluate is smooth along the rod."""
+    force = ("t*heaviside(u - 0.4)", "heaviside(u - 0.4)*sin(u + t) - cos(t)*heaviside(0.8 - u)")
+    r = discretise(load_scene(CAST["planar plain"] | {"effects": [weight("planar", *force)]}), 2, 3)
+    assert r.mesh.mass @ named(r, "step_1") == pytest.approx(1.3 - 0.4, rel=1e-13)
+    assert r.mesh.mass @ named(r, "step_2") == pytest.approx(0.8, rel=1e-13)
+    assert [c.name for c in r.structure.at("node")] == ["step_1", "step_2"]
 
 
 def test_a_stepped_stiffness_is_seen_from_inside_each_element() -> None:

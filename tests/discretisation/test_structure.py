@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import pytest
 
 from geocosserat.codegen.identity import identity
 from geocosserat.discretisation.structure import RodStructure, structure_of
-from geocosserat.model.expressions import symbols
+from geocosserat.model.expressions import Number, symbols
 from geocosserat.model.scene import load_scene
 from tests.discretisation.rods import CAST, CLAMPED, FREE, NAMES, WORLD, changed, load, scene, weight
 
@@ -65,7 +66,7 @@ def test_every_coefficient_stands_where_it_varies(name: str) -> None:
         if "t" in used:
             assert c.place == "time"
         elif "u" in used:
-            assert c.place == ("node" if c.name.startswith("weight") else "point")
+            assert c.place == ("node" if c.name.startswith(("weight", "step")) else "point")
         else:
             assert c.place == "uniform"
 
@@ -168,6 +169,18 @@ def test_the_mobility_couples_what_the_friction_couples_directly_or_through_othe
     assert [[entry != "0" for entry in row] for row in skip.mobility] == [
         [True, False, True], [False, True, False], [True, False, True],
     ]  # fmt: skip
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_the_mobility_is_zero_exactly_where_the_inverse_of_the_friction_is(seed: int) -> None:
+    """For any pattern of couplings: a component answers to all those it is connected with, and to no other."""
+    rng = np.random.default_rng(seed)
+    coupled = rng.random((6, 6)) < 0.15
+    coupled = coupled | coupled.T | np.eye(6, dtype=bool)
+    connected = np.linalg.matrix_power(coupled.astype(int), 6) > 0
+    friction = tuple(tuple(Number(float(entry)) for entry in row) for row in coupled)
+    found = structure_of(replace(scene("spatial plain").model, friction=friction))
+    np.testing.assert_array_equal([[entry != "0" for entry in row] for row in found.mobility], connected)
 
 
 def test_names_of_parameters_cannot_meet_names_of_the_kernel() -> None:

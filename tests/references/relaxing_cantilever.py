@@ -76,7 +76,7 @@ class Collocation:
         return np.concatenate([np.zeros(2 * len(theta)), theta])
 
     def _terms(self, state: Array) -> tuple[Array, Array, Array, Array, Array]:
-        """cos and sin of theta, w' in world components (2, inner), and theta_t, all at inner points but the last."""
+        """cos and sin of theta, w' (2, inner) and theta_t at the inner points; theta at all points."""
         rod, (wx, wy, theta) = self.rod, state.reshape(3, -1)
         c, s = np.cos(theta), np.sin(theta)
         pull = np.stack([self.first @ wx, self.first @ wy])
@@ -99,9 +99,10 @@ class Collocation:
         rod, n = self.rod, len(self.first)
         c, s, pull, spin, angle = self._terms(state)
         bend = rod.k3 * self.second - np.diag(rod.k * (pull[1] * s + pull[0] * c))
-        spins = np.concatenate(
-            [-rod.k * s[:, None] * self.first, rod.k * c[:, None] * self.first, bend], axis=1
-        ) / rod.friction3
+        spins = (
+            np.concatenate([-rod.k * s[:, None] * self.first, rod.k * c[:, None] * self.first, bend], axis=1)
+            / rod.friction3
+        )
         turning, turnings = (self.fill @ spin)[:, None], self.fill @ spins
         angles = np.concatenate([np.zeros((len(angle), 2 * n)), self.fill], axis=1)
         cos, sin = np.cos(angle)[:, None], np.sin(angle)[:, None]

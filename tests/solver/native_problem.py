@@ -12,13 +12,19 @@ import numpy as np
 from geocosserat.kernel.contract import Callbacks
 from tests.solver.problems import Array, forced_rates
 
-SOURCE = r"""
+STRUCT = """
+typedef struct {
+    int size, calls;
+    double bad, gamma, *rates;
+    double *(*vector)(void *), *(*matrix)(void *);
+} problem;
+"""
+SOURCE = rf"""
 #include <math.h>
-typedef struct { int size, calls; double bad, gamma; double *rates; double *(*vector)(void *); double *(*matrix)(void *); } problem;
-
+{STRUCT}
 /* From the instant `bad` on the last rate is NaN, and said to be so. */
 int rate(double t, void *y, void *out, void *data)
-{
+{{
     problem *p = data;
     double *r = p->vector(out), *x = p->vector(y);
     for (int i = 0; i < p->size; ++i)
@@ -28,9 +34,9 @@ int rate(double t, void *y, void *out, void *data)
         return 0;
     r[p->size - 1] = NAN;
     return 1;
-}
+}}
 int jacobian(double t, void *y, void *r, void *J, void *data, void *a, void *b, void *c)
-{
+{{
     problem *p = data;
     double *columns = p->matrix(J);
     for (int i = 0; i < p->size * p->size; ++i)
@@ -38,24 +44,23 @@ int jacobian(double t, void *y, void *r, void *J, void *data, void *a, void *b, 
     for (int i = 0; i < p->size; ++i)
         columns[i * p->size + i] = -p->rates[i];
     return 0;
-}
+}}
 int setup(double t, void *y, void *r, int usable, int *renewed, double gamma, void *data)
-{
+{{
     ((problem *)data)->gamma = gamma;
     *renewed = !usable;
     return 0;
-}
+}}
 int solve(double t, void *y, void *r, void *b, void *x, double gamma, double tolerance, int side, void *data)
-{
+{{
     problem *p = data;
     for (int i = 0; i < p->size; ++i)
         p->vector(x)[i] = p->vector(b)[i] / (1.0 + p->gamma * p->rates[i]);
     return 0;
-}
+}}
 """
-DECLARATIONS = """
-typedef struct { int size, calls; double bad, gamma; double *rates; double *(*vector)(void *); double *(*matrix)(void *); } problem;
-int rate(double, void *, void *, void *);
+DECLARATIONS = f"""
+{STRUCT}int rate(double, void *, void *, void *);
 int jacobian(double, void *, void *, void *, void *, void *, void *, void *);
 int setup(double, void *, void *, int, int *, double, void *);
 int solve(double, void *, void *, void *, void *, double, double, int, void *);
@@ -89,8 +94,12 @@ class NativeForced:
         ffi = self._ffi
         self.problem.vector = ffi.cast("double *(*)(void *)", vector)
         self.problem.matrix = ffi.cast("double *(*)(void *)", matrix)
-        addresses = [int(ffi.cast("uintptr_t", getattr(self._lib, name))) for name in ("rate", "jacobian", "setup", "solve")]
-        return Callbacks(int(ffi.cast("uintptr_t", self.problem)), *addresses, keep=self)
+
+        def address(pointer: Any) -> int:
+            return int(ffi.cast("uintptr_t", pointer))
+
+        functions = (getattr(self._lib, name) for name in ("rate", "jacobian", "setup", "solve"))
+        return Callbacks(address(self.problem), *map(address, functions), keep=self)
 
     def rate(self, t: float, y: Array, out: Array) -> None:
         out[:] = -self._rates * (y - np.cos(t)) if t <= self.problem.bad else np.nan

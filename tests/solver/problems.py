@@ -87,9 +87,7 @@ def robertson() -> Problem:
 
     def J(t: float, y: Array) -> Array:
         _, b, c = y
-        return np.array(
-            [[-0.04, 1e4 * c, 1e4 * b], [0.04, -1e4 * c - 6e7 * b, -1e4 * b], [0.0, 6e7 * b, 0.0]]
-        )
+        return np.array([[-0.04, 1e4 * c, 1e4 * b], [0.04, -1e4 * c - 6e7 * b, -1e4 * b], [0.0, 6e7 * b, 0.0]])
 
     return Problem(3, f, J)
 
