@@ -16,6 +16,7 @@ from rich.console import Console
 from geocosserat.conductor import derive as derive_equations
 from geocosserat.conductor import generate as generate_kernels
 from geocosserat.conductor import run as run_scene
+from geocosserat.kernel.compile import CompileError
 from geocosserat.model.errors import InputError
 from geocosserat.results.errors import FileError
 from geocosserat.results.summary import print_summary
@@ -37,7 +38,7 @@ def _one_message(command: Callable[..., None]) -> Callable[..., None]:
     def guarded(*args: Any, **options: Any) -> None:
         try:
             command(*args, **options)
-        except (InputError, FileError) as error:
+        except (InputError, FileError, CompileError) as error:
             click.echo(f"geocosserat: {error}", err=True)
             sys.exit(WRONG_INPUT)
         except BrokenPipeError:  # the reader of our output left

@@ -95,7 +95,8 @@ def _claim(folder: Path, overwrite: bool, names: Sequence[str] = (SOLUTION, PICT
         folder.mkdir(parents=True, exist_ok=True)
         writable = os.access(folder, os.W_OK | os.X_OK)
     except OSError as error:
-        raise InputError("a folder to write to", str(error), "choose another --out", key="--out") from error
+        found = f"{folder}: {error.strerror or error}"
+        raise InputError("a folder to write to", found, "choose another --out", key="--out") from error
     if not writable:
         raise InputError("a folder that can be written", f"{folder}, read-only", "choose another --out", key="--out")
     kept = [name for name in names if (folder / name).exists()]
@@ -135,12 +136,12 @@ def run(
     folder = None if out is None else Path(out)
     if resume and folder is None:
         raise InputError("the folder of the interrupted run", "none", "name it with --out", key="--resume")
+    backend = choose_backend(read.run.backend, _tell)
     if folder is not None:
         _claim(folder, overwrite or resume)
         # plotting starts slowly, and an integration in C leaves the interpreter idle
         Thread(target=import_module, args=["geocosserat.results.picture"], daemon=True).start()
     clock = Clock()
-    backend = choose_backend(read.run.backend, _tell)
     keeper = Keeper(folder, _key(read), resume)
     try:
         attempt, estimate = Simulation(read, backend, kernel_text, clock, keeper).solve()

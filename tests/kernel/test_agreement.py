@@ -7,7 +7,7 @@ import pytest
 
 from geocosserat.discretisation.semidiscrete import discretise
 from tests.discretisation import oracle
-from tests.discretisation.rods import SIZES, changed, random_state
+from tests.discretisation.rods import NAMES, SIZES, changed, random_state, rod
 from tests.kernel.kernels import (
     Case,
     T,
@@ -96,6 +96,25 @@ def test_a_call_leaves_nothing_behind(case: Case) -> None:
     np.testing.assert_array_equal(rate(case, T, y), first)
     np.testing.assert_array_equal(k.jacobian(T, y), J)
     np.testing.assert_array_equal(y, kept)
+
+
+@pytest.mark.parametrize("case", [Case(name, 1, 1, "numpy") for name in NAMES], ids=str)
+def test_the_smallest_rod_is_no_special_case(case: Case) -> None:
+    """One element of degree 1: a single point between two nodes, of which none, one or both may move."""
+    backends = ("numpy", "c") if case.name.endswith(("everything", "hung")) else ("numpy",)
+    y, wanted = state(case, 21), reference_rate(*case[:3], T, 21)
+    direction, slope = reference_derivative(*case[:3], 21)
+    for backend in backends:
+        k, out = like(Case(case.name, 6, 1, backend), rod(*case[:3])), np.empty_like(y)
+        k.rate(T, y, out)
+        np.testing.assert_allclose(out, wanted, rtol=1e-12, atol=1e-13 * np.abs(wanted).max())
+        J = k.jacobian(T, y)
+        assert np.all(np.abs(J @ direction - slope)[:-2] <= 1e-13 * (np.abs(J) @ np.abs(direction))[:-2])
+        k.prepare(T, y)
+        k.factor(0.1)
+        k.solve(y, out)
+        m = rod(*case[:3]).structure.group.dimension
+        np.testing.assert_allclose((np.eye(m) - 0.1 * J[:m, :m]) @ out[:m], y[:m], rtol=0, atol=1e-11)
 
 
 @pytest.mark.parametrize("backend", ["numpy", "c"])
