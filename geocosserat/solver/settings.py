@@ -2,7 +2,7 @@
 
 import sys
 
-DENSE_LIMIT = 120
+DENSE_LIMIT = 80
 """Largest state that is solved with dense matrices (benchmarks/linear_solvers.py)."""
 
 KRYLOV = 10
