@@ -69,3 +69,11 @@ def test_the_twelve_lines_make_the_rod_of_the_demo(folder: Path, examples: Path)
     short = geocosserat.run(folder / "helix.toml", settings=["run.frames=2"])
     demo = geocosserat.run(examples / "helix.toml", settings=["run.frames=2"])
     np.testing.assert_allclose(short.tip["position"], demo.tip["position"], rtol=0, atol=2e-6)
+
+
+def test_the_scene_of_the_documentation_runs() -> None:
+    """The annotated scene in docs/scenes.md is a scene; it is run coarsely."""
+    text = (ROOT / "docs" / "scenes.md").read_text()
+    scene = re.findall(r"^```toml\n(.*?)^```", text, re.MULTILINE | re.DOTALL)[0]
+    run = geocosserat.run(scene, settings=["run.frames=2", "run.elements=2", "run.degree=5", "run.until=0.05"])
+    assert run.reached

@@ -45,7 +45,7 @@ def changed(scene: Mapping[str, Any], changes: Mapping[str, Any]) -> Scene:
 def simulate(
     scene: Mapping[str, Any], elements: int, degree: int, rtol: float = 1e-11, backend: str = "numpy", **run: Any
 ) -> Run:
-    """The scene at a fixed mesh and tolerance. The numpy kernel needs no compiling and gives what the C kernel gives."""
+    """The scene at a fixed mesh and tolerance; in numpy, which needs no compiling and gives what C gives."""
     settings = {"elements": elements, "degree": degree, "rtol": rtol, "backend": backend, "frames": 2, **run}
     return geocosserat.run(changed(scene, {f"run.{key}": value for key, value in settings.items()}))
 
@@ -78,7 +78,7 @@ def straight(
 
 def polynomial(u: Array, values: Array, degree: int) -> str:
     """An expression of u that fits the values, in powers of (u - middle) so that it keeps its digits."""
-    middle = 0.5 * (u[0] + u[-1])
+    middle = float(0.5 * (u[0] + u[-1]))
     fit = np.polynomial.Polynomial.fit(u, values, degree, domain=[u[0], u[-1]], window=[u[0] - middle, u[-1] - middle])
     terms = [f"({c!r})*(u - {middle!r})**{k}" for k, c in enumerate(map(float, fit.coef))]
     return " + ".join(terms)

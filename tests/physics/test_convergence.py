@@ -46,7 +46,9 @@ def _drawn() -> Array:
     return tip(simulate(SPATIAL, 3, 16, 1e-12))
 
 
-def _error(scene: Scene, expected: Array, elements: int, degree: int, rtol: float = 1e-12, backend: str = "numpy") -> float:
+def _error(
+    scene: Scene, expected: Array, elements: int, degree: int, rtol: float = 1e-12, backend: str = "numpy"
+) -> float:
     return float(np.linalg.norm(tip(simulate(scene, elements, degree, rtol, backend)) - expected))
 
 

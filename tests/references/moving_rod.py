@@ -8,9 +8,8 @@ The balances of force and of moment of a piece of rod, in the world, for n = R F
 with n, m given at the free end. The unknowns at Chebyshev points are the quaternion of R and w = r - integral of
 e_1, what stretch and shear add to the unstretched rod: the stiff part is linear in w. Neither strains nor a Lie
 bracket is integrated. The free end has no rate: its seven unknowns obey (F, M) = load and |q| = 1, so the system is
-differential-algebraic (index 1), and Radau IIA collocation of 4 stages (order 7) integrates it as it stands, on
-growing steps and with Jacobians (by complex steps) that are renewed now and then. Sources: E. Hairer and G. Wanner,
-*Solving Ordinary Differential Equations II*, sections IV.8 and VI.1; L. N. Trefethen, *Spectral Methods in MATLAB*.
+differential-algebraic (index 1); Radau IIA of 4 stages (order 7) integrates it as it stands, on growing steps.
+Source: L. N. Trefethen, *Spectral Methods in MATLAB*.
 
 Dimensions: stiffness (force x 3, force x length^2 x 3); friction (force x time / length^2 x 3, force x time x 3).
 """
@@ -26,7 +25,7 @@ from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
 from tests.references import chebyshev
-from tests.references.relaxing_cantilever import instants, radau
+from tests.references.radau import instants, integrate
 
 Array = npt.NDArray[np.float64]
 Values = npt.NDArray[Any]  # real, or complex for derivatives
@@ -65,7 +64,7 @@ class Shape:
 
 
 class Collocation:
-    """d moved(y) / dt = residual(t, y) for y (..., degree, 7): w and quaternion at all points but the clamp."""
+    """w (3) and quaternion (4) at all points but the clamp make a state, (7 degree,); see `radau.System`."""
 
     def __init__(self, rod: Rod, degree: int) -> None:
         self.rod, self.u = rod, chebyshev.points(degree, rod.length)
@@ -85,7 +84,7 @@ class Collocation:
         for before, after in itertools.pairwise(self.u):  # to each point, not interpolated
             clamp = solve_ivp(rate, (before, after), clamp, method="DOP853", rtol=1e-13, atol=1e-14).y[:, -1]
             states.append(clamp)
-        return np.array(states)
+        return np.array(states).ravel()
 
     def moved(self, y: Values) -> Values:
         """What the rates are the rates of: r - r(clamp) and q; nothing at the free end."""
@@ -93,12 +92,13 @@ class Collocation:
         along = self.integral @ rotated(whole[..., 3:], FIRST)
         result = np.concatenate([whole[..., :3] + along, whole[..., 3:]], axis=-1)[..., 1:, :]
         result[..., -1, :] = 0.0
-        return result
+        return np.asarray(result.reshape(y.shape))
 
     def whole(self, y: Values) -> Values:
-        """With the clamp in front."""
+        """w and quaternion at all points, (..., points, 7): with the clamp in front."""
         clamp = np.concatenate([np.zeros(3), self.clamp])
-        return np.concatenate([np.broadcast_to(clamp, (*y.shape[:-2], 1, 7)), y], axis=-2)
+        points = y.reshape(*y.shape[:-1], -1, 7)
+        return np.concatenate([np.broadcast_to(clamp, (*y.shape[:-1], 1, 7)), points], axis=-2)
 
     def fields(self, y: Values) -> tuple[Values, Values, Values]:
         """At all points: quaternions (..., 4), turn and stress (..., 6)."""
@@ -122,15 +122,12 @@ class Collocation:
         missing = n[..., -1, :] - np.asarray(self.rod.force(t))
         norm = np.sum(q[..., -1, :] ** 2, axis=-1, keepdims=True) - 1.0
         rates[..., -1, :] = np.concatenate([missing, m[..., -1, :], norm], axis=-1)
-        return rates
+        return np.asarray(rates.reshape(y.shape))
 
     def jacobians(self, t: float, y: Array) -> tuple[Array, Array]:
-        """d moved / dy and d residual / dy, (7 degree, 7 degree) each, by complex steps."""
-        size = y.size
-        steps = y + 1e-30j * np.eye(size).reshape(size, *y.shape)
-        moved, residual = (
-            values.imag.reshape(size, size).T / 1e-30 for values in (self.moved(steps), self.residual(t, steps))
-        )
+        """d moved / dy and d residual / dy, by complex steps."""
+        steps = y + 1e-30j * np.eye(y.size)
+        moved, residual = (values.imag.T / 1e-30 for values in (self.moved(steps), self.residual(t, steps)))
         return np.asarray(moved), np.asarray(residual)
 
     def shape(self, y: Array) -> Shape:
@@ -168,27 +165,5 @@ def solve(
     Raises ArithmeticError if Newton's method fails: the steps are then too long.
     """
     equations = Collocation(rod, degree)
-    state = equations.begin()
-    nodes, matrix = radau(STAGES)
-    # in the eigenvectors of the collocation matrix the stages have a linear system each
-    factors, vectors = np.linalg.eig(matrix)
-    inverse_vectors, middle = np.linalg.inv(vectors), STAGES // 2
-    t = 0.0
-    for end in instants(until, first * until, growth, longest * until)[1:]:
-        step = float(end) - t
-        start, stages = equations.moved(state), np.tile(state, (STAGES, 1, 1))
-        for iteration in range(48):
-            if iteration % 4 == 0:
-                moved, jacobian = equations.jacobians(t + step * nodes[middle], stages[middle])
-                systems = np.linalg.inv(moved - step * factors[:, None, None] * jacobian)
-            rates = np.stack([equations.residual(t + step * c, y) for c, y in zip(nodes, stages, strict=True)])
-            left = equations.moved(stages) - start - step * np.einsum("ij,j...->i...", matrix, rates)
-            solved = np.einsum("sij,sj->si", systems, inverse_vectors @ left.reshape(STAGES, -1))
-            change = (vectors @ solved).real.reshape(stages.shape)
-            stages = stages - change
-            if np.abs(change).max() < 1e-11:
-                break
-        else:
-            raise ArithmeticError(f"Newton's method left {np.abs(change).max():.1e}; expected shorter time steps")
-        state, t = stages[-1], float(end)
-    return equations.shape(state)
+    steps = instants(until, first * until, growth, longest * until)
+    return equations.shape(integrate(equations, equations.begin(), steps, STAGES, 1e-11 * rod.length))

@@ -12,14 +12,12 @@ with r = 0, theta = 0 at u = 0 and n = 0, theta' = 0 at u = L. It starts unstret
 angle. Written for w = r - integral of e_1, what stretch and shear add to the unstretched rod, so that n = k w'
 does not come out as a small difference of large numbers:
 
-    friction w_t = k w'' - friction (integral of e_1)_t
+    friction (w + integral of e_1)_t = k w''
     friction3 theta_t = k3 theta'' + k (w_y' cos theta - w_x' sin theta)
 
 In space: collocation at Chebyshev points, the values at the free end eliminated by its boundary conditions. In
-time: Radau IIA collocation of 6 stages (order 11), Newton's method with the Jacobian at the start of the step, on
-steps that grow by a constant factor up to a longest one, so that the fast initial layers are resolved. Sources:
-L. N. Trefethen, *Spectral Methods in MATLAB*, chapter 13; E. Hairer and G. Wanner, *Solving Ordinary Differential
-Equations II*, sections IV.5 and IV.8.
+time: Radau IIA of 6 stages (order 11), on steps that grow by a constant factor up to a longest one, so that the fast
+initial layers are resolved. Source: L. N. Trefethen, *Spectral Methods in MATLAB*, chapter 13.
 
 Dimensions: k force; k3 force x length^2; friction force x time / length^2; friction3 force x time.
 """
@@ -29,9 +27,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from numpy.polynomial import legendre
 
 from tests.references import chebyshev
+from tests.references.radau import instants, integrate
 
 Array = npt.NDArray[np.float64]
 STAGES = 6
@@ -59,87 +57,61 @@ class Shape:
 
 
 class Collocation:
-    """The equations at the inner Chebyshev points; a state is (w, theta) there, shape (3 (degree - 1),)."""
+    """The equations at the inner Chebyshev points; a state is (w_x, w_y, theta) there, shape (3 (degree - 1),)."""
 
     def __init__(self, rod: Rod, degree: int) -> None:
         self.rod, self.u = rod, chebyshev.points(degree, rod.length)
         slope = chebyshev.derivative(degree, rod.length)
         # from inner values to all: zero at the clamp, no slope at the free end
         self.fill = np.concatenate([np.zeros((1, degree - 1)), np.eye(degree - 1), -slope[-1:, 1:-1] / slope[-1, -1]])
-        self.first = (slope @ self.fill)[1:-1]
-        self.second = (slope @ slope @ self.fill)[1:-1]
+        self.first, self.second = (slope @ self.fill)[1:-1], (slope @ slope @ self.fill)[1:-1]
         self.integral = chebyshev.integral(degree, rod.length, 0)
+        self.size = 3 * (degree - 1)
 
     def start(self) -> Array:
         """Unstretched and unsheared: w = 0."""
         theta = self.rod.angle(self.u)[1:-1]
         return np.concatenate([np.zeros(2 * len(theta)), theta])
 
-    def _terms(self, state: Array) -> tuple[Array, Array, Array, Array, Array]:
-        """cos and sin of theta, w' (2, inner) and theta_t at the inner points; theta at all points."""
-        rod, (wx, wy, theta) = self.rod, state.reshape(3, -1)
-        c, s = np.cos(theta), np.sin(theta)
-        pull = np.stack([self.first @ wx, self.first @ wy])
-        spin = (rod.k3 * self.second @ theta + rod.k * (pull[1] * c - pull[0] * s)) / rod.friction3
-        return c, s, pull, spin, self.fill @ theta
+    def moved(self, y: Array) -> Array:
+        """Coordinates (x, y, theta) at the inner points."""
+        unstretched = self._unstretched(y)[..., 1:-1]
+        return y + np.concatenate([unstretched, 0.0 * unstretched[..., :1, :]], axis=-2).reshape(y.shape)
 
-    def rate(self, state: Array) -> Array:
-        """d state / dt."""
-        rod, (wx, wy, _) = self.rod, state.reshape(3, -1)
-        _, _, _, spin, angle = self._terms(state)
-        turning = self.fill @ spin
-        advance = self.integral @ np.stack([-np.sin(angle) * turning, np.cos(angle) * turning], axis=1)
-        drag = rod.k / rod.friction
-        return np.concatenate(
-            [drag * self.second @ wx - advance[1:-1, 0], drag * self.second @ wy - advance[1:-1, 1], spin]
-        )
+    def _unstretched(self, y: Array) -> Array:
+        """Integral of e_1 at all points, (..., 2, points)."""
+        angle = self._parts(y)[..., 2, :] @ self.fill.T
+        return np.stack([np.cos(angle), np.sin(angle)], axis=-2) @ self.integral.T
 
-    def jacobian(self, state: Array) -> Array:
-        """d rate / d state."""
-        rod, n = self.rod, len(self.first)
-        c, s, pull, spin, angle = self._terms(state)
-        bend = rod.k3 * self.second - np.diag(rod.k * (pull[1] * s + pull[0] * c))
-        spins = (
-            np.concatenate([-rod.k * s[:, None] * self.first, rod.k * c[:, None] * self.first, bend], axis=1)
-            / rod.friction3
-        )
-        turning, turnings = (self.fill @ spin)[:, None], self.fill @ spins
-        angles = np.concatenate([np.zeros((len(angle), 2 * n)), self.fill], axis=1)
-        cos, sin = np.cos(angle)[:, None], np.sin(angle)[:, None]
-        advance_x = self.integral @ (-sin * turnings - cos * turning * angles)
-        advance_y = self.integral @ (cos * turnings - sin * turning * angles)
-        result = np.concatenate([-advance_x[1:-1], -advance_y[1:-1], spins])
-        drag = rod.k / rod.friction
-        result[:n, :n] += drag * self.second
-        result[n : 2 * n, n : 2 * n] += drag * self.second
-        return result
+    @staticmethod
+    def _parts(y: Array) -> Array:
+        return np.reshape(y, (*y.shape[:-1], 3, -1))
 
-    def shape(self, state: Array) -> Shape:
+    def residual(self, t: float, y: Array) -> Array:
+        """Their rates."""
+        rod, (wx, wy, theta) = self.rod, np.moveaxis(self._parts(y), -2, 0)
+        drag, first, second = rod.k / rod.friction, self.first.T, self.second.T
+        couple = rod.k3 * theta @ second + rod.k * (wy @ first * np.cos(theta) - wx @ first * np.sin(theta))
+        return np.concatenate([drag * wx @ second, drag * wy @ second, couple / rod.friction3], axis=-1)
+
+    def jacobians(self, t: float, y: Array) -> tuple[Array, Array]:
+        """d moved / dy and d residual / dy."""
+        rod, n, (wx, wy, theta) = self.rod, len(self.first), self._parts(y)
+        angle, nothing = (self.fill @ theta)[:, None], np.zeros((n, n))
+        along = [(self.integral @ (turned * self.fill))[1:-1] for turned in (-np.sin(angle), np.cos(angle))]
+        mass = np.eye(3 * n)
+        mass[: 2 * n, 2 * n :] += np.concatenate(along)
+        c, s = np.cos(theta)[:, None], np.sin(theta)[:, None]
+        pull = self.first @ np.stack([wx, wy], axis=1)
+        bend = rod.k3 * self.second - rod.k * np.diag(pull[:, 1] * s[:, 0] + pull[:, 0] * c[:, 0])
+        drag = rod.k / rod.friction * self.second
+        couple = np.concatenate([-rod.k * s * self.first, rod.k * c * self.first, bend], axis=1) / rod.friction3
+        return mass, np.block([[drag, nothing, nothing], [nothing, drag, nothing], [couple]])
+
+    def shape(self, y: Array) -> Shape:
         """Positions from w and the unstretched rod."""
-        wx, wy, theta = (self.fill @ part for part in state.reshape(3, -1))
-        unstretched = self.integral @ np.stack([np.cos(theta), np.sin(theta)], axis=1)
-        return Shape(self.u, unstretched + np.stack([wx, wy], axis=1), theta)
-
-
-def radau(stages: int) -> tuple[Array, Array]:
-    """Nodes (stages,) in (0, 1], the last one 1, and the collocation matrix (stages, stages) of Radau IIA."""
-    right = legendre.legsub(np.eye(stages + 1)[stages], np.eye(stages + 1)[stages - 1])
-    x = np.sort(legendre.legroots(right).real)
-    x[-1] = 1.0
-    powers = legendre.legvander(x, stages)
-    integrals = [x + 1.0] + [(powers[:, k + 1] - powers[:, k - 1]) / (2 * k + 1) for k in range(1, stages)]
-    return 0.5 * (x + 1.0), 0.5 * np.stack(integrals, axis=1) @ np.linalg.inv(powers[:, :stages])
-
-
-def instants(until: float, first: float, growth: float, longest: float) -> Array:
-    """Ends of the time steps, from 0: growing, never above `longest`, the last ones equal."""
-    ends = [0.0]
-    step = first
-    while step < longest and ends[-1] + step < until:
-        ends.append(ends[-1] + step)
-        step *= growth
-    rest = until - ends[-1]
-    return np.concatenate([ends[:-1], ends[-1] + np.linspace(0.0, rest, max(1, int(np.ceil(rest / longest))) + 1)])
+        parts = self._parts(y) @ self.fill.T
+        return Shape(self.u, (parts[:2] + self._unstretched(y)).T, parts[2])
 
 
 def solve(
@@ -150,21 +122,5 @@ def solve(
     Raises ArithmeticError if Newton's method fails: the steps are then too long.
     """
     equations = Collocation(rod, degree)
-    state = equations.start()
-    _, matrix = radau(STAGES)
-    # in the eigenvectors of the collocation matrix the stages have a linear system each
-    factors, vectors = np.linalg.eig(matrix)
-    inverse_vectors = np.linalg.inv(vectors)
-    for step in np.diff(instants(until, first * until, growth, longest * until)):
-        systems = np.linalg.inv(np.eye(len(state)) - step * factors[:, None, None] * equations.jacobian(state))
-        stages = np.tile(state, (STAGES, 1))
-        for _ in range(60):
-            residual = stages - state - step * matrix @ np.stack([equations.rate(y) for y in stages])
-            change = (vectors @ np.einsum("sij,sj->si", systems, inverse_vectors @ residual)).real
-            stages = stages - change
-            if np.abs(change).max() < 1e-13:
-                break
-        else:
-            raise ArithmeticError(f"Newton's method left {np.abs(change).max():.1e}; expected shorter time steps")
-        state = stages[-1]
-    return equations.shape(state)
+    steps = instants(until, first * until, growth, longest * until)
+    return equations.shape(integrate(equations, equations.start(), steps, STAGES, 1e-13 * rod.length))

@@ -1,0 +1,60 @@
+"""Four integrators, two languages, two linear solvers, one rod."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from geocosserat.solver import cvode, cvode_native
+from tests.physics.scenes import Array, Scene, changed, example, simulate, tip
+
+SCENES = {name: changed(example(name), {"run.until": until}) for name, until in (("follower", 0.3), ("sinking", 0.02))}
+CURLED = changed(example("helix"), {"rod.reference": [1.0, 0.0, 0.0, 2.0, 0.0, 4.0], "run.until": 0.02})
+
+
+def _everything(scene: Scene, degree: int, rtol: float, **run: object) -> Array:
+    """Positions at the end, and the ledger, as one array."""
+    found = simulate(scene, 1, degree, rtol, **run)
+    ledger = [found.ledger[name] for name in ("stored", "dissipated", "work")]
+    return np.concatenate([found.solution.position[-1].ravel(), np.array(ledger) / max(map(abs, ledger))])
+
+
+@pytest.mark.parametrize("method", ["radau", "bdf", "lsoda"])
+@pytest.mark.parametrize("name", SCENES)
+def test_all_methods_agree(name: str, method: str) -> None:
+    """Positions and ledger are those of CVODE, within what their tolerances leave."""
+    loose, tight = (
+        np.abs(_everything(SCENES[name], 6, rtol, method=method) - _everything(SCENES[name], 6, 1e-11)).max()
+        for rtol in (1e-5, 1e-9)
+    )
+    assert loose < 1e-2
+    assert tight < 1e-6
+    assert tight < 1e-2 * loose
+
+
+@pytest.mark.usefixtures("c_compiler")
+@pytest.mark.parametrize("method", ["cvode", "bdf"])
+@pytest.mark.parametrize("scene", [SCENES["sinking"], CURLED], ids=["sinking", "curled"])
+def test_numpy_gives_what_c_gives(scene: Scene, method: str) -> None:
+    """At a loose tolerance too: both compute the same numbers, so the steps are the same."""
+    c, numpy = (_everything(scene, 6, 1e-6, method=method, backend=backend) for backend in ("c", "numpy"))
+    np.testing.assert_allclose(numpy, c, rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("backend", ["numpy", "c"])
+@pytest.mark.parametrize("scene", [SCENES["sinking"], CURLED], ids=["sinking", "curled"])
+def test_dense_and_block_elimination_agree(
+    scene: Scene, backend: str, request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The same rod with dense matrices and with the kernel's own elimination as preconditioner, on three elements."""
+    if backend == "c":
+        request.getfixturevalue("c_compiler")
+    tips, steps = [], []
+    for limit in (10_000, 0):
+        monkeypatch.setattr(cvode, "DENSE_LIMIT", limit)
+        monkeypatch.setattr(cvode_native, "DENSE_LIMIT", limit)
+        run = simulate(scene, 3, 6, 1e-9, backend)
+        tips.append(tip(run))
+        steps.append(run.evaluations["steps"])
+    np.testing.assert_allclose(tips[0], tips[1], rtol=0, atol=1e-7)
+    assert steps[1] < 2 * steps[0] + 50
