@@ -1,16 +1,21 @@
 """From an accuracy asked for to a solution that has it: refine until two successive answers agree."""
 
-from collections.abc import Iterator
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from geocosserat.discretisation.mesh import Array, Mesh
+from geocosserat.discretisation.mesh import Array, Mesh, make_mesh
+from geocosserat.model.expressions import Expression, evaluate, jump_positions, symbols
+from geocosserat.model.records import Scene
 
 ROUND_OFF = 1e-13
 """Tolerances below this only add round-off."""
 
 DEFAULT_ACCURACY = 1e-6
+
+MANY_ELEMENTS = 64
+"""Elements of degree 16 on which a scene's coefficients count as known."""
 
 
 @dataclass(frozen=True)
@@ -22,17 +27,49 @@ class Setting:
     rtol: float
 
 
-def ladder(accuracy: float) -> Iterator[Setting]:
+def ladder(accuracy: float) -> tuple[Setting, ...]:
     """Settings of growing cost: first the degree, then the elements; tolerances tighten along."""
-    settings = [(1, 8), (1, 16), (2, 16), (4, 16), (8, 16), (16, 16), (32, 16)]
-    for step, (elements, degree) in enumerate(settings):
-        yield Setting(elements, degree, max(ROUND_OFF, accuracy * 10.0 ** -(1 + 0.5 * step)))
+    sizes = [(1, 8), (1, 16), (2, 16), (4, 16), (8, 16), (16, 16), (32, 16)]
+    return tuple(
+        Setting(elements, degree, max(ROUND_OFF, accuracy * 10.0 ** -(1 + 0.5 * step)))
+        for step, (elements, degree) in enumerate(sizes)
+    )
+
+
+def sees_all(scene: Scene, setting: Setting, accuracy: float) -> bool:
+    """Whether the Gauss points of a setting notice all that the scene varies along the rod.
+
+    Two coarse runs that both miss a narrow feature agree with each other. So the integrals of every coefficient and of
+    its square are compared with those on a thousand points; they must agree to the square root of the accuracy.
+    """
+    model = scene.model
+    coefficients = [*model.reference, *scene.start.strain, *(e for effect in model.effects for e in effect.force)]
+    coefficients += [e for row in (*model.stiffness, *model.friction) for e in row]
+    varying = [e for e in coefficients if "u" in symbols(e)]
+    steps = [x for e in varying for x in jump_positions(e, model.length, model.parameters)]
+    coarse, fine = (
+        make_mesh(model.length, n, p, steps) for n, p in ((setting.elements, setting.degree), (MANY_ELEMENTS, 16))
+    )
+    for e in varying:
+        for t in (0.0, 0.37 * scene.run.until, scene.run.until) if "t" in symbols(e) else (0.0,):
+            values = {**model.parameters, "t": t}
+            exact, found = (_moments(e, mesh, values) for mesh in (fine, coarse))
+            if np.any(np.abs(found[:2] - exact[:2]) > np.sqrt(accuracy) * exact[2:]):
+                return False
+    return True
+
+
+def _moments(e: Expression, mesh: Mesh, values: Mapping[str, float]) -> Array:
+    """Integrals of e and of its square along the rod, and the largest they could be for its greatest value."""
+    f = np.broadcast_to(evaluate(e, {**values, "u": mesh.u_point}), mesh.u_point.shape)
+    most = float(np.abs(f).max())
+    return np.array([mesh.weight @ f, mesh.weight @ f**2, *(most**k * mesh.edges[-1] for k in (1, 2))])
 
 
 def position_gap(coarse: Mesh, positions: Array, fine: Mesh, finer: Array) -> float:
     """Largest distance between two rods, (nodes, space) each, at the nodes of the coarse one; a length.
 
-    The fine rod is interpolated in its elements: it bounds the error of the coarse one.
+    The fine rod is interpolated in its elements: the gap estimates the error of the coarse one.
     """
     return float(np.linalg.norm(interpolate(fine, finer, coarse.u) - positions, axis=1).max())
 

@@ -8,6 +8,7 @@ import os
 import sys
 from collections.abc import Callable, Mapping
 from functools import wraps
+from pathlib import Path
 from typing import Any
 
 import click
@@ -18,11 +19,12 @@ from geocosserat.conductor import generate as generate_kernels
 from geocosserat.conductor import run as run_scene
 from geocosserat.kernel.compile import CompileError
 from geocosserat.model.errors import InputError
+from geocosserat.results.checkpoint import NAME as CHECKPOINT
 from geocosserat.results.errors import FileError
 from geocosserat.results.summary import print_summary
 from geocosserat.version import VERSION
 
-DONE, NO, WRONG_INPUT, NOT_REACHED = 0, 1, 2, 3
+WRONG_INPUT, NOT_REACHED = 2, 3
 
 SETTINGS = click.option(
     "--set", "settings", metavar="KEY=VALUE", multiple=True, help="Change any key, e.g. rod.length=2."
@@ -79,7 +81,7 @@ def run(
     try:
         result = run_scene(scene, out, settings=settings, accuracy=accuracy, overwrite=overwrite, resume=resume)
     except KeyboardInterrupt:
-        kept = f"; go on with --out {out} --resume" if out else "; with --out it could be resumed"
+        kept = f"; go on with --out {out} --resume" if out and (Path(out) / CHECKPOINT).exists() else ""
         click.echo(f"geocosserat: interrupted{kept}", err=True)
         sys.exit(NOT_REACHED)
     if as_json:

@@ -11,6 +11,7 @@ import json
 import os
 import sys
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
@@ -27,11 +28,12 @@ from geocosserat.model.errors import InputError
 from geocosserat.model.records import Scene
 from geocosserat.model.scene import load_scene
 from geocosserat.results.atomic import write_bytes
+from geocosserat.results.checkpoint import NAME as CHECKPOINT
 from geocosserat.results.checkpoint import Keeper
 from geocosserat.results.netcdf import save
 from geocosserat.results.solution import Solution
 from geocosserat.results.summary import summary, write_summary
-from geocosserat.simulation import Clock, Simulation, chosen_setting, solution_of
+from geocosserat.simulation import Attempt, Clock, Simulation, chosen_setting, solution_of
 from geocosserat.version import VERSION
 
 SceneLike = str | os.PathLike[str] | Mapping[str, Any] | Scene
@@ -46,10 +48,10 @@ class Run:
     fields: Mapping[str, Any]
 
     def __getattr__(self, name: str) -> Any:
-        try:
-            return self.__dict__["fields"][name]
-        except KeyError:
-            raise AttributeError(f"a run has no field {name!r}; it has {', '.join(self.fields)}") from None
+        fields = self.__dict__.get("fields", {})  # empty while a copy is being made
+        if name in fields:
+            return fields[name]
+        raise AttributeError(f"a run has no field {name!r}; it has {', '.join(fields)}")
 
 
 def load_any(scene: SceneLike, settings: Sequence[str] = ()) -> Scene:
@@ -89,7 +91,7 @@ def choose_backend(asked: str, tell: Callable[[str], None]) -> str:
     return "numpy"
 
 
-def _claim(folder: Path, overwrite: bool, names: Sequence[str] = (SOLUTION, PICTURE, SUMMARY)) -> None:
+def _claim(folder: Path, overwrite: bool, names: Sequence[str] = (SOLUTION, PICTURE, SUMMARY, CHECKPOINT)) -> None:
     """Makes sure, before anything is computed, that results can be written and that none are lost."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -107,6 +109,12 @@ def _claim(folder: Path, overwrite: bool, names: Sequence[str] = (SOLUTION, PICT
             "choose another --out, or say --overwrite",
             key="--out",
         )
+
+
+def _give_back(folder: Path) -> None:
+    """Removes a folder in which nothing was written."""
+    with suppress(OSError):
+        folder.rmdir()
 
 
 def _tell(message: str) -> None:
@@ -137,29 +145,46 @@ def run(
     if resume and folder is None:
         raise InputError("the folder of the interrupted run", "none", "name it with --out", key="--resume")
     backend = choose_backend(read.run.backend, _tell)
+    keeper = Keeper(folder, _key(read), resume)
+    plotting = Thread(target=_import_plotting, daemon=True)
     if folder is not None:
         _claim(folder, overwrite or resume)
-        # plotting starts slowly, and an integration in C leaves the interpreter idle
-        Thread(target=import_module, args=["geocosserat.results.picture"], daemon=True).start()
+        plotting.start()
     clock = Clock()
-    keeper = Keeper(folder, _key(read), resume)
     try:
-        attempt, estimate = Simulation(read, backend, kernel_text, clock, keeper).solve()
-    except CompileError as error:
-        if read.run.backend == "c":
-            raise
-        _tell(f"{error}\nrunning on numpy instead")
-        attempt, estimate = Simulation(read, "numpy", kernel_text, clock, keeper).solve()
+        attempt, estimate = _simulate(read, backend, clock, keeper)
+    except CompileError:
+        if folder is not None:
+            _give_back(folder)
+        raise
     except KeyboardInterrupt:
         keeper.save()
         raise
     solution = solution_of(read, attempt, estimate, clock)
     files: list[Path] = []
     if folder is not None:
-        files = [folder / SOLUTION, folder / PICTURE, folder / SUMMARY]
+        plotting.join()
+        files = [folder / SOLUTION, folder / SUMMARY, folder / PICTURE]
         _write(solution, files, summary(solution, files, scene=read.path))
         keeper.finish()
     return Run(solution, summary(solution, files, scene=read.path))
+
+
+def _simulate(scene: Scene, backend: str, clock: Clock, keeper: Keeper) -> tuple[Attempt, float | None]:
+    """The simulation, on numpy if C was not asked for and turns out not to compile."""
+    try:
+        return Simulation(scene, backend, kernel_text, clock, keeper).solve()
+    except CompileError as error:
+        if scene.run.backend == "c":
+            raise
+        _tell(f"{error}; running on numpy instead")
+        return Simulation(scene, "numpy", kernel_text, clock, keeper).solve()
+
+
+def _import_plotting() -> None:
+    """Plotting starts slowly, and an integration in C leaves the interpreter idle. A failure shows when it is used."""
+    with suppress(Exception):
+        import_module("geocosserat.results.picture")
 
 
 def _key(scene: Scene) -> str:
@@ -249,8 +274,8 @@ def generate(
 
 
 def _write(solution: Solution, files: Sequence[Path], fields: Mapping[str, Any]) -> None:
+    save(solution, files[0])
+    write_summary(fields, files[1])
     from geocosserat.results.picture import picture
 
-    save(solution, files[0])
-    picture(solution, files[1])
-    write_summary(fields, files[2])
+    picture(solution, files[2])

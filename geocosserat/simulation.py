@@ -9,7 +9,7 @@ from datetime import UTC, datetime
 
 import numpy as np
 
-from geocosserat.accuracy import DEFAULT_ACCURACY, Setting, ladder, position_gap
+from geocosserat.accuracy import DEFAULT_ACCURACY, Setting, ladder, position_gap, sees_all
 from geocosserat.discretisation.mesh import Array, Mesh
 from geocosserat.discretisation.semidiscrete import SemiDiscrete, discretise
 from geocosserat.discretisation.structure import RodStructure
@@ -17,7 +17,7 @@ from geocosserat.kernel.library import KernelText
 from geocosserat.kernel.load import load
 from geocosserat.kernel.native import NativeRod
 from geocosserat.kernel.pure import NumpyRod
-from geocosserat.model.expressions import evaluate
+from geocosserat.model.expressions import evaluate, switch_times
 from geocosserat.model.records import Scene
 from geocosserat.results.checkpoint import Keeper
 from geocosserat.results.progress import progress
@@ -83,10 +83,28 @@ def _unit_of_energy(scene: Scene, rod: SemiDiscrete, kernel: NativeRod | NumpyRo
 def chosen_setting(scene: Scene) -> Setting | None:
     """The setting the scene fixes, if it fixes any part of one."""
     run = scene.run
-    if run.elements is None and run.degree is None and run.rtol is None:
+    if run.elements is None and run.degree is None and run.rtol is None and run.atol is None:
         return None
     rtol = run.rtol if run.rtol is not None else (run.accuracy or DEFAULT_ACCURACY) / 10
     return Setting(run.elements or 1, run.degree or 8, rtol)
+
+
+def drift(rod: SemiDiscrete, trajectory: Trajectory) -> float:
+    """How far the right end moved that is held, though nothing but the march of poses says so; a length."""
+    if rod.structure.held != (True, True):
+        return 0.0
+    first, last = (rod.poses(trajectory.states[i]).position[-1] for i in (0, -1))
+    return float(np.linalg.norm(last - first))
+
+
+def switches_of(scene: Scene) -> tuple[float, ...]:
+    """Instants at which a load of the scene switches."""
+    model = scene.model
+    loads = [end.force or () for end in (model.left, model.right)] + [
+        end.torque or () for end in (model.left, model.right)
+    ]
+    loads += [effect.force for effect in model.effects]
+    return tuple(t for load in loads for e in load for t in switch_times(e, scene.run.until, model.parameters))
 
 
 class Simulation:
@@ -103,7 +121,7 @@ class Simulation:
         self.scene, self.backend, self.kernel_text, self.clock, self.keeper = scene, backend, kernel_text, clock, keeper
 
     def solve(self) -> tuple[Attempt, float | None]:
-        """The attempt to report, and the estimate of its error relative to the length (None at a fixed setting)."""
+        """The attempt to report, and the estimate of its error relative to the length (None where there is none)."""
         chosen = chosen_setting(self.scene)
         if chosen is not None:
             return self._attempt(0, chosen, np.empty((0, 0))), None
@@ -111,18 +129,22 @@ class Simulation:
         resumed = self.keeper.resumed
         before: tuple[Mesh, Array] | None = None
         estimate: float | None = None
-        for rung, setting in enumerate(ladder(accuracy)):
+        settings = ladder(accuracy)
+        for rung, setting in enumerate(settings):
             if resumed is not None and rung < resumed.rung:
-                if rung == resumed.rung - 1:
+                if rung == resumed.rung - 1 and resumed.before.size:
                     before = discretise(self.scene, setting.elements, setting.degree).mesh, resumed.before
                 continue
+            if setting is not settings[-1] and not sees_all(self.scene, setting, accuracy):
+                continue  # too coarse to notice everything the scene varies along the rod
             self.clock.plan_ends()  # what was solved before this one turns out to be planning
             now = self._attempt(rung, setting, before[1] if before else np.empty((0, 0)))
-            positions = now.rod.poses(now.trajectory.states[-1]).position
             if not now.trajectory.reached:
-                break
+                return now, None
+            positions = now.rod.poses(now.trajectory.states[-1]).position
             if before is not None:
-                estimate = position_gap(*before, now.rod.mesh, positions) / self.scene.model.length
+                gap = position_gap(*before, now.rod.mesh, positions)
+                estimate = max(gap, drift(now.rod, now.trajectory)) / self.scene.model.length
                 if estimate <= accuracy:
                     break
             before = now.rod.mesh, positions
@@ -151,6 +173,7 @@ class Simulation:
                     atol,
                     report,
                     self.keeper.frame,
+                    switches_of(scene),
                 )
                 states = np.concatenate([done[:-1], rest.states])
                 trajectory = replace(rest, times=times[: len(states)], states=states)
@@ -163,7 +186,8 @@ def solution_of(scene: Scene, attempt: Attempt, estimate: float | None, clock: C
     seen = [kernel.observe(float(t), y) for t, y in zip(trajectory.times, trajectory.states, strict=True)]
     poses = rod.poses(trajectory.states)
     accuracy = scene.run.accuracy
-    missed = estimate is not None and estimate > (accuracy or DEFAULT_ACCURACY)
+    # refined as far as it goes, and no two rods agree
+    missed = chosen_setting(scene) is None and (estimate is None or estimate > (accuracy or DEFAULT_ACCURACY))
     return Solution(
         scene=scene.source,
         title=scene.title,

@@ -8,7 +8,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import sympy as sp
-from sympy.core.function import AppliedUndef
 
 
 @dataclass(frozen=True)
@@ -98,8 +97,3 @@ def _prune(tape: Tape) -> Tape:
             kept.append((target, expression))
             needed |= expression.free_symbols
     return Tape(tuple(reversed(kept)), tape.outputs)
-
-
-def unknown_functions(tape: Tape) -> frozenset[str]:
-    """Names of functions that have no definition to print; empty for a tape that can be printed."""
-    return frozenset(str(f.func) for _, e in (*tape.steps, *tape.outputs) for f in e.atoms(AppliedUndef))

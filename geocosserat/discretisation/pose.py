@@ -5,6 +5,7 @@ itself. In space the rotation over an element is orthogonal to round-off, becaus
 invariants (Hairer, Lubich, Wanner, "Geometric Numerical Integration", section IV.2.1).
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,6 +21,16 @@ class Poses:
     position: Array
     rotation: Array
     angle: Array | None = None
+
+
+def joined(parts: Sequence[Poses]) -> Poses:
+    """Poses of successive frames as one."""
+    angles = [part.angle for part in parts if part.angle is not None]
+    return Poses(
+        np.concatenate([part.position for part in parts]),
+        np.concatenate([part.rotation for part in parts]),
+        np.concatenate(angles) if angles else None,
+    )
 
 
 def cross_matrix(v: Array) -> Array:

@@ -7,10 +7,13 @@ import numpy as np
 
 from geocosserat.algebra.exponential import rotation_from_vector
 from geocosserat.discretisation.mesh import Array, Mesh, make_mesh
-from geocosserat.discretisation.pose import Poses, cross_matrix, march, plane_rotation
+from geocosserat.discretisation.pose import Poses, cross_matrix, joined, march, plane_rotation
 from geocosserat.discretisation.structure import Coefficient, RodStructure, structure_of
 from geocosserat.model.expressions import Expression, evaluate, jump_positions
 from geocosserat.model.records import RodModel, Scene
+
+BATCH = 2**22
+"""Numbers that the linear systems of a march may take at once."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +47,14 @@ class SemiDiscrete:
         return states[..., : d * Q].reshape(*states.shape[:-1], d, Q)
 
     def poses(self, states: Array) -> Poses:
-        """Poses at the nodes for states (..., size), marched from the held or the carried end."""
+        """Poses at the nodes for states (frames, size) or (size,), marched from the held or the carried end."""
+        if states.ndim == 2:  # in batches: the systems of the march take much more room than their solutions
+            p = self.mesh.degree
+            batch = max(1, BATCH // (9 * self.mesh.elements * p * (p + 1)))
+            return joined([self._poses(states[i : i + batch]) for i in range(0, len(states), batch)])
+        return self._poses(states)
+
+    def _poses(self, states: Array) -> Poses:
         position, rotation, angle = self.anchor.position, self.anchor.rotation, self.anchor.angle
         if self.structure.base == "carried":
             position, rotation, angle = self._carried(states)

@@ -19,7 +19,6 @@ from geocosserat.model.expressions import (
     Number,
     Symbol,
     constant,
-    substitute,
     symbols,
     to_text,
 )
@@ -124,30 +123,29 @@ class _Collector:
             return ZERO
         used = symbols(expression)
         if "t" in used:
-            expression = self.sample_steps(expression, varying)
-            # a prefix keeps the user's names apart from those of the kernel
-            parameters = symbols(expression) - {"t", "u", *self.steps.values()}
-            renamed = {parameter: Symbol(f"p_{parameter}") for parameter in parameters}
-            for parameter, symbol in sorted(renamed.items()):
-                self.found[symbol.name] = Coefficient(symbol.name, "uniform", Symbol(parameter))
-            self.found[name] = Coefficient(name, "time", substitute(expression, renamed))
+            self.found[name] = Coefficient(name, "time", self.name_inputs(expression, varying))
         else:
             self.found[name] = Coefficient(name, varying if "u" in used else "uniform", expression)
         return name
 
-    def sample_steps(self, e: Expression, varying: Place) -> Expression:
-        """`e` with its steps along the rod as coefficients: sampled from both sides of a node, like all else."""
+    def name_inputs(self, e: Expression, varying: Place) -> Expression:
+        """`e` in terms of t, u and coefficients: its parameters, and its steps along the rod (which are sampled from
+        both sides of a node, like all else)."""
         match e:
+            case Symbol(parameter) if parameter not in ("t", "u"):
+                # a prefix keeps the user's names apart from those of the kernel
+                self.found[f"p_{parameter}"] = Coefficient(f"p_{parameter}", "uniform", e)
+                return Symbol(f"p_{parameter}")
             case Call("heaviside", argument) if "u" in symbols(argument):
                 name = self.steps.setdefault(e, f"step_{len(self.steps) + 1}")
                 self.found[name] = Coefficient(name, varying, e)
                 return Symbol(name)
             case Call(function, argument):
-                return Call(function, self.sample_steps(argument, varying))
+                return Call(function, self.name_inputs(argument, varying))
             case Negate(operand):
-                return Negate(self.sample_steps(operand, varying))
+                return Negate(self.name_inputs(operand, varying))
             case Binary(operator, left, right):
-                return Binary(operator, self.sample_steps(left, varying), self.sample_steps(right, varying))
+                return Binary(operator, self.name_inputs(left, varying), self.name_inputs(right, varying))
             case _:
                 return e
 

@@ -3,6 +3,7 @@
 import hashlib
 import os
 import platform
+import shlex
 import shutil
 import subprocess
 import tempfile
@@ -25,9 +26,9 @@ class CompileError(RuntimeError):
 @lru_cache(maxsize=1)
 def compiler() -> str | None:
     """Path of the C compiler ($CC, cc, gcc or clang), or None. CC="" says: use none."""
-    chosen = os.environ.get("CC")
-    if chosen is not None:
-        return shutil.which(chosen) if chosen else None
+    if "CC" in os.environ:
+        words = shlex.split(os.environ["CC"])
+        return shutil.which(words[0]) if words else None
     return next((path for name in ("cc", "gcc", "clang") if (path := shutil.which(name))), None)
 
 
@@ -41,6 +42,11 @@ def _machine() -> str:
     return platform.machine() + features
 
 
+def _words() -> list[str]:
+    """What $CC says after the name of the compiler, as in CC="gcc -m64"."""
+    return shlex.split(os.environ.get("CC", ""))[1:]
+
+
 def library_path(source: str, degree: int, tool: str) -> Path:
     """Where the compiled kernel of this degree is, or will be."""
     status = os.stat(tool)
@@ -48,6 +54,7 @@ def library_path(source: str, degree: int, tool: str) -> Path:
         source,
         str(degree),
         *FLAGS,
+        *_words(),
         os.path.realpath(tool),
         str(status.st_size),
         str(status.st_mtime_ns),
@@ -66,17 +73,18 @@ def compile_c(source: str, degree: int) -> Path:
     tool = compiler()
     if tool is None:
         raise CompileError("expected a C compiler, found none on the path; install one, or use the numpy backend")
-    target = library_path(source, degree, tool)
-    if target.exists():
-        return target
     try:
+        target = library_path(source, degree, tool)
+        if target.exists():
+            return target
         with tempfile.TemporaryDirectory(dir=target.parent, prefix=".compile-") as folder:
             code, built = Path(folder) / "rod.c", Path(folder) / "rod.so"
             code.write_text(source)
-            command = [tool, *FLAGS, f"-DDEGREE={degree}", str(code), "-o", str(built), "-lm"]
+            command = [tool, *_words(), *FLAGS, f"-DDEGREE={degree}", str(code), "-o", str(built), "-lm"]
             done = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE, check=False)
             if done.returncode:
-                raise CompileError(f"{tool} failed on a generated kernel: {done.stderr.strip()[:2000]}")
+                said = " ".join(done.stderr.split())[:1000] or f"exit code {done.returncode}"
+                raise CompileError(f"{tool} failed on a generated kernel: {said}")
             os.replace(built, target)
     except subprocess.TimeoutExpired:
         raise CompileError(f"{tool} did not compile a generated kernel within {PATIENCE} s") from None

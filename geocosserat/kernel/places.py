@@ -13,10 +13,10 @@ def cache_folder() -> Path:
     """
     named = os.environ.get("GEOCOSSERAT_CACHE")
     base = os.environ.get("XDG_CACHE_HOME")
-    folder = Path(named) if named else Path(base) / "geocosserat" if base else Path.home() / ".cache" / "geocosserat"
     try:
-        return _private(folder)
-    except OSError:
+        home = Path(base) if base else Path.home() / ".cache"
+        return _private(Path(named) if named else home / "geocosserat")
+    except (OSError, RuntimeError):  # RuntimeError: a user without a home
         return _private(Path(tempfile.gettempdir()) / f"geocosserat-{os.getuid()}")
 
 

@@ -42,6 +42,7 @@ __all__ = [
     "jumps",
     "parse",
     "substitute",
+    "switch_times",
     "symbols",
     "to_text",
 ]
@@ -215,8 +216,7 @@ def jumps(e: Expression, variable: str = "u") -> tuple[Expression, ...]:
             continue
         if moving := sorted(names & ({"u", "s", "t"} - {variable})):
             raise ExpressionError(
-                f"a step must not move, but heaviside({to_text(node.argument)}) "
-                f"depends on {variable} and {moving[0]}"
+                f"a step must not move, but heaviside({to_text(node.argument)}) depends on {variable} and {moving[0]}"
             )
         if _degree(node.argument, variable) != 1:
             raise ExpressionError(
@@ -256,3 +256,30 @@ def jump_positions(e: Expression, length: float, values: Mapping[str, float]) ->
         if start < 0 < end or end < 0 < start:
             places.add(length * (start / (start - end)))
     return tuple(sorted(places))
+
+
+def switch_times(e: Expression, until: float, values: Mapping[str, float]) -> tuple[float, ...]:
+    """Instants in the open interval (0, until) at which a ``heaviside`` of ``t`` in the expression switches.
+
+    ``values`` holds the parameters. Sign changes of its argument are looked for on 4000 intervals and bisected;
+    an argument that is affine in t is found however short the pulse that two of them make.
+    """
+    grid = np.linspace(0.0, until, 4001)
+    found: set[float] = set()
+    for node in _walk(e):
+        if not (isinstance(node, Call) and node.function == "heaviside"):
+            continue
+        names = symbols(node.argument)
+        if "t" not in names or names & {"u", "s"}:
+            continue
+        signs = np.sign(np.broadcast_to(evaluate(node.argument, {**values, "t": grid}), grid.shape))
+        found.update(float(t) for t in grid[1:-1][signs[1:-1] == 0])
+        for i in np.flatnonzero(signs[:-1] * signs[1:] < 0):
+            low, high = float(grid[i]), float(grid[i + 1])
+            while low < (middle := (low + high) / 2) < high:
+                if np.sign(evaluate(node.argument, {**values, "t": middle})) == signs[i]:
+                    low = middle
+                else:
+                    high = middle
+            found.add(high)
+    return tuple(sorted(found))

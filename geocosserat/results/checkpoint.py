@@ -100,7 +100,7 @@ class Keeper:
 
     def save(self) -> None:
         """Writes the checkpoint now."""
-        if self.folder is not None:
+        if self.folder is not None and self.states[0].size:
             save_checkpoint(Checkpoint(self.key, self.rung, np.array(self.states), self.before), self.folder)
         self.saved = time.monotonic()
 

@@ -13,7 +13,7 @@ from geocosserat.solver.sundials import Sundials
 from geocosserat.solver.trajectory import Frame, Progress, Trajectory
 
 BDF, NORMAL, LEFT = 2, 1, 1
-TOO_MUCH_WORK, STOPPED = -1, 1
+TOO_MUCH_WORK = -1
 
 
 def cvode_native(
@@ -147,6 +147,7 @@ MEANINGS = {
     "CV_REPTD_RHSFUNC_ERR": "the rate is not finite however small the step",
     "CV_UNREC_RHSFUNC_ERR": "the rate is not finite",
     "CV_TOO_MUCH_ACC": "the tolerance asked for is below round-off; ask for less accuracy",
+    "CV_ILL_INPUT": "it could not begin, or the span of time is too short for the numbers of a computer",
     "CV_LSETUP_FAIL": "the linear system is singular",
     "CV_LSOLVE_FAIL": "the linear system could not be solved",
 }

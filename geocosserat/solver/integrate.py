@@ -1,6 +1,8 @@
 """One door to all integrators, chosen by name. Nothing here knows what a rod is."""
 
-from collections.abc import Callable
+import warnings
+from collections.abc import Callable, Sequence
+from functools import partial
 from importlib import import_module
 from typing import TypeAlias
 
@@ -8,6 +10,7 @@ import numpy as np
 
 from geocosserat.kernel.contract import Array, Kernel, NativeKernel
 from geocosserat.solver.cvode_native import cvode_native
+from geocosserat.solver.pieces import in_pieces
 from geocosserat.solver.sundials import sundials
 from geocosserat.solver.trajectory import Frame, Progress, Trajectory
 
@@ -29,11 +32,13 @@ def integrate(
     atol: float | Array = 1e-9,
     progress: Progress = _silent,
     frame: Frame = _silent,
+    switches: Sequence[float] = (),
 ) -> Trajectory:
     """Integrates y' = f(t, y) from `start` (size,) at times[0]; states at all of `times` (T >= 2, increasing).
 
     rtol, and atol for all or for each state entry (in its own unit), bound the local error of a step. A run that
-    cannot go on returns what it has, with the reason; it never raises for numerical trouble.
+    cannot go on returns what it has, with the reason; it never raises for numerical trouble. switches: instants at
+    which the rate jumps; no step reaches over one.
 
     Raises ValueError for an unknown method, or a start that is not finite.
     """
@@ -46,12 +51,22 @@ def integrate(
     if not np.all(np.isfinite(rate)):
         return Trajectory(times[:1].copy(), start[None].copy(), 1, 0, 0, False, "the rate is not finite at the start")
     tolerance = np.broadcast_to(np.asarray(atol, dtype=float), start.shape).copy()
+    chosen = _chosen(method, kernel)
+
+    def piece(y: Array, instants: Array, told: Progress, noted: Frame) -> Trajectory:
+        return chosen(kernel, y, instants, rtol, tolerance, told, noted)
+
+    with np.errstate(all="ignore"), warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # what goes wrong becomes the reason of the trajectory
+        return in_pieces(piece, start, times, switches, progress, frame)
+
+
+def _chosen(method: str, kernel: Kernel) -> Integrator:
+    """The integrator of that name; CVODE is called directly where the kernel and the installation allow it."""
     if method != "cvode":
-        return _integrator("scipy_methods", method)(kernel, start, times, rtol, tolerance, progress, frame)
+        return _integrator("scipy_methods", method)
     library = sundials() if isinstance(kernel, NativeKernel) else None
-    if library is not None:
-        return cvode_native(library, kernel, start, times, rtol, tolerance, progress, frame)
-    return _integrator("cvode", "cvode")(kernel, start, times, rtol, tolerance, progress, frame)
+    return partial(cvode_native, library) if library is not None else _integrator("cvode", "cvode")
 
 
 def _integrator(module: str, name: str) -> Integrator:

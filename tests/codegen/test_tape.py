@@ -8,7 +8,7 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from geocosserat.codegen.tape import Tape, jacobian, record, unknown_functions
+from geocosserat.codegen.tape import Tape, jacobian, record
 from tests.codegen.symbolic import NAMES, close, evaluate, point, trees
 
 x, y, z = sp.symbols(NAMES)
@@ -100,9 +100,3 @@ def test_recording_is_deterministic() -> None:
     """The same expressions make the same tape, however often."""
     e = {"a": sp.sin(x + y) * sp.cos(x + y) / (1 + z**2), "b": (1 + z**2) * (x + y)}
     assert len({record(e) for _ in range(5)}) == 1
-
-
-def test_a_function_without_a_definition_is_named() -> None:
-    """Before it is printed into a program that would not compile."""
-    assert unknown_functions(record({"a": sp.Function("mystery")(x) + sp.sin(y)})) == {"mystery"}
-    assert unknown_functions(record({"a": sp.sin(y)})) == frozenset()

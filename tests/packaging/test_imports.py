@@ -22,7 +22,7 @@ STAGES = {
     "kernel": ("algebra", "model", "discretisation"),  # kernels are text by now: no sympy, no templates
     "solver": ("kernel.contract",),  # integrates anything that keeps the contract; knows no rods
     "results": ("algebra.groups", "model.errors", "kernel.contract", "solver.trajectory"),
-    "accuracy": ("discretisation.mesh",),  # the conductor's plan
+    "accuracy": ("discretisation.mesh", "model"),  # the conductor's plan
 }
 BASE = ("version", "shipped")  # free to all; import nothing of the package
 SEE_ALL = ("", "__main__", "cli", "conductor", "simulation")  # "" is geocosserat/__init__.py

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from tests.physics.scenes import Scene, changed, example, polynomial, semidiscrete, simulate, straight, tip
-from tests.references import axial_twist, cantilever_modes, circle, elastica
+from tests.references import axial_twist, cantilever_modes, circle, elastica, static_rod
 
 LENGTH = 1.3
 STIFFNESS, FRICTION = [70.0, 50.0, 40.0, 0.9, 1.2, 1.0], [1.5, 2.0, 1.8, 0.03, 0.006, 0.008]
@@ -150,6 +151,48 @@ def test_an_end_moment_rolls_the_rod_into_an_arc(turns: float, end: str) -> None
     along = circle.position(np.array([LENGTH]), torque, 0.7)[0]
     chord = solution.position[-1, -1] - solution.position[-1, 0]
     np.testing.assert_allclose(np.linalg.norm(chord), np.linalg.norm(along), rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("frame", ["world", "body"])
+def test_at_rest_it_is_the_rod_that_shooting_finds(frame: str) -> None:
+    """Every mode coupled, curled at rest, a force, a torque and a weight that grows along it: pose, strain, stress."""
+    size = np.array([40.0, 30.0, 25.0, 0.8, 1.0, 1.3])
+    mixing = 0.12 * np.sin(np.add.outer(np.arange(6), np.arange(6)) * 1.7 + 0.4) * (1.0 - np.eye(6))
+    stiffness = np.sqrt(np.outer(size, size)) * (np.eye(6) + mixing)
+    force, torque, base = np.array([0.2, 0.4, -0.5]), np.array([0.1, -0.2, 0.15]), np.array([0.3, -1.2, 0.7])
+    world = frame == "world"
+    rod = static_rod.Rod(
+        length=1.4,
+        stiffness=stiffness,
+        reference=lambda u: np.array([1.0, 0.05 * u, 0.0, 0.3, 0.5 * np.cos(2.0 * u), -0.4 + 0.6 * u]),
+        tip_force=force if world else static_rod.ZERO,
+        tip_torque=torque if world else static_rod.ZERO,
+        body_force=static_rod.ZERO if world else force,
+        body_torque=static_rod.ZERO if world else torque,
+        weight=lambda u: np.array([0.2, -0.3 - 0.5 * u, 0.1 * u**2]),
+        base_position=(0.3, -0.2, 0.5),
+        base_rotation=Rotation.from_rotvec(base).as_matrix(),
+    )
+    scene = changed(
+        straight([list(map(float, row)) for row in stiffness], [1.0, 2.0, 1.5, 0.02, 0.03, 0.01], length=1.4),
+        {
+            "rod.motion": "spatial",
+            "rod.reference": ["1", "0.05*u", "0", "0.3", "0.5*cos(2*u)", "-0.4 + 0.6*u"],
+            "start.position": [0.3, -0.2, 0.5],
+            "start.rotation": base.tolist(),
+            "ends.right": {"kind": "free", "force": force.tolist(), "torque": torque.tolist(), "frame": frame},
+            "effects": [{"kind": "weight", "force": ["0.2", "-0.3 - 0.5*u", "0.1*u**2"]}],
+            "run.until": 60.0,
+        },
+    )
+    solution = simulate(scene, 1, 18, 1e-9).solution
+    expected = static_rod.solve(rod)
+    np.testing.assert_allclose(solution.position[-1, -1], expected.tip_position, rtol=0, atol=1e-9)
+    np.testing.assert_allclose(solution.rotation[-1, -1], expected.tip_rotation, rtol=0, atol=1e-9)
+    shape = expected.at(solution.u_point)
+    np.testing.assert_allclose(solution.turn[-1], shape.turn, rtol=0, atol=1e-9)
+    np.testing.assert_allclose(solution.stress[-1], shape.stress, rtol=0, atol=1e-8)
+    np.testing.assert_allclose(solution.twist[-1], 0.0, atol=1e-7)
 
 
 def test_the_circle_example_closes() -> None:

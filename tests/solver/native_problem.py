@@ -15,7 +15,7 @@ from tests.solver.problems import Array, forced_rates
 STRUCT = """
 typedef struct {
     int size, calls;
-    double bad, gamma, *rates;
+    double bad, latest, gamma, *rates;
     double *(*vector)(void *), *(*matrix)(void *);
 } problem;
 """
@@ -30,6 +30,7 @@ int rate(double t, void *y, void *out, void *data)
     for (int i = 0; i < p->size; ++i)
         r[i] = -p->rates[i] * (x[i] - cos(t));
     p->calls += 1;
+    p->latest = fmax(p->latest, t);
     if (t <= p->bad)
         return 0;
     r[p->size - 1] = NAN;

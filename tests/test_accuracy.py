@@ -1,0 +1,97 @@
+"""An error that is asked for is an error that is found, or the run says that it was not."""
+
+import numpy as np
+import pytest
+
+import geocosserat
+from geocosserat.accuracy import Setting, ladder, sees_all
+from geocosserat.model.expressions import parse, switch_times
+from geocosserat.model.scene import load_scene
+
+ROD = {"motion": "planar", "length": 1.0, "stiffness": [1e4, 1e4, 1.0], "friction": [1.0, 1.0, 0.01]}
+
+
+def test_a_feature_between_the_points_is_noticed() -> None:
+    """A coarse mesh that has no point on a narrow bump would agree with another one that has none."""
+    narrow = {**ROD, "reference": ["1", "0", "60*exp(-((u-0.5)/0.01)**2)"]}
+    scene = load_scene({"rod": narrow, "start": {"strain": ["1", "0", "0"]}, "run": {"until": 0.02}})
+    seen = [sees_all(scene, setting, 1e-6) for setting in ladder(1e-6)]
+    assert not any(seen[:3])
+    assert seen[-1]
+    run = geocosserat.run({"rod": narrow, "start": {"strain": ["1", "0", "0"]}, "run": {"until": 0.02, "frames": 2}})
+    fine = ["run.elements=64", "run.degree=8", "run.rtol=1e-9"]
+    exact = geocosserat.run(
+        {"rod": narrow, "start": {"strain": ["1", "0", "0"]}, "run": {"until": 0.02, "frames": 2}}, settings=fine
+    )
+    np.testing.assert_allclose(run.tip["position"], exact.tip["position"], rtol=0, atol=2e-6)
+
+
+def test_a_feature_too_fine_for_all_is_not_reported_as_solved() -> None:
+    """Code 3 and the reason, not a small error."""
+    soft = {**ROD, "stiffness": [1e4, 1e4, "1-0.999*exp(-((u-0.5)/0.0005)**2)"]}
+    ends = {"right": {"kind": "free", "force": [0.0, 0.5], "frame": "body"}}
+    run = geocosserat.run({"rod": soft, "ends": ends, "run": {"until": 0.2, "frames": 2}})
+    assert not run.reached
+    assert "not reached by refinement" in run.reason
+
+
+def test_uniform_rods_are_seen_by_the_coarsest_mesh() -> None:
+    """Nothing varies, nothing can be missed."""
+    assert sees_all(load_scene({"rod": ROD, "run": {"until": 1.0}}), Setting(1, 1, 1e-6), 1e-12)
+
+
+@pytest.mark.parametrize("method", ["cvode", "radau", "bdf", "lsoda"])
+def test_a_pulse_on_a_rod_at_rest_is_not_stepped_over(method: str) -> None:
+    """At rest, steps grow without bound; the pulse is short, and what it did is still there just after it."""
+    ends = {"right": {"kind": "free", "force": [0.0, "20*(heaviside(t-1.0)-heaviside(t-1.0-1e-3))"], "frame": "world"}}
+    late = geocosserat.run({"rod": ROD, "ends": ends, "run": {"until": 1.002, "method": method, "frames": 2}})
+    ends = {"right": {"kind": "free", "force": [0.0, "20*(1-heaviside(t-1e-3))"], "frame": "world"}}
+    early = geocosserat.run({"rod": ROD, "ends": ends, "run": {"until": 0.002, "method": method, "frames": 2}})
+    assert early.tip["position"][1] > 0.02
+    np.testing.assert_allclose(late.tip["position"], early.tip["position"], rtol=0, atol=2e-6)
+    assert late.ledger["residual"] < 1e-5
+
+
+def test_instants_of_output_on_switches_are_kept() -> None:
+    """Frames before, on and after a switch all arrive, once each and in order."""
+    ends = {"right": {"kind": "free", "force": [0.0, "heaviside(t-0.5)"], "frame": "body"}}
+    run = geocosserat.run({"rod": ROD, "ends": ends, "run": {"until": 1.0, "frames": 5}})
+    np.testing.assert_array_equal(run.solution.time, [0.0, 0.25, 0.5, 0.75, 1.0])
+    tip = run.solution.position[:, -1, 1]
+    np.testing.assert_allclose(tip[:3], 0.0, atol=1e-9)
+    assert 0 < tip[3] < tip[4]
+
+
+@pytest.mark.parametrize(
+    ("text", "times"),
+    [
+        ("heaviside(t-1)-heaviside(t-1.0001)", [1.0, 1.0001]),
+        ("heaviside(sin(pi*t))", [1.0]),
+        ("k*heaviside(0.3*k - t)*heaviside(t+1)", [0.6]),
+        ("t**2", []),
+    ],
+)
+def test_switches_are_found_where_they_are(text: str, times: list[float]) -> None:
+    """Affine arguments and periodic ones, inside the open interval only."""
+    found = switch_times(parse(text, frozenset({"t", "k"})), 2.0, {"k": 2.0})
+    np.testing.assert_allclose(found, times, rtol=0, atol=1e-9)
+
+
+def test_two_held_ends_count_what_the_far_one_strayed() -> None:
+    """Coarsely, the right end leaves its clamp by the error of the scheme; the estimate of a fine run covers it."""
+    rod = {
+        "motion": "spatial",
+        "length": 1.0,
+        "stiffness": [900.0, 700.0, 600.0, 0.8, 1.5, 1.2],
+        "friction": [1.0, 2.0, 1.9, 0.01, 0.02, 0.03],
+    }
+    scene = {
+        "rod": rod,
+        "start": {"strain": ["1", "0", "0", "4", "5*sin(3*u)", "3"]},
+        "ends": {"left": {"kind": "clamped"}, "right": {"kind": "clamped"}},
+        "run": {"until": 0.05, "frames": 2, "accuracy": 1e-7},
+    }
+    run = geocosserat.run(scene)
+    ends = run.solution.position[:, -1]
+    assert run.reached
+    assert np.linalg.norm(ends[1] - ends[0]) <= run.error["estimated"] <= 1e-7
