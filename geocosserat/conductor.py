@@ -13,9 +13,7 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from importlib import import_module
 from pathlib import Path
-from threading import Thread
 from typing import Any
 
 from geocosserat.accuracy import Setting
@@ -146,10 +144,8 @@ def run(
         raise InputError("the folder of the interrupted run", "none", "name it with --out", key="--resume")
     backend = choose_backend(read.run.backend, _tell)
     keeper = Keeper(folder, _key(read), resume)
-    plotting = Thread(target=_import_plotting, daemon=True)
     if folder is not None:
         _claim(folder, overwrite or resume)
-        plotting.start()
     clock = Clock()
     try:
         attempt, estimate = _simulate(read, backend, clock, keeper)
@@ -163,8 +159,7 @@ def run(
     solution = solution_of(read, attempt, estimate, clock)
     files: list[Path] = []
     if folder is not None:
-        plotting.join()
-        files = [folder / SOLUTION, folder / SUMMARY, folder / PICTURE]
+        files = [folder / SOLUTION, folder / PICTURE, folder / SUMMARY]
         _write(solution, files, summary(solution, files, scene=read.path))
         keeper.finish()
     return Run(solution, summary(solution, files, scene=read.path))
@@ -179,12 +174,6 @@ def _simulate(scene: Scene, backend: str, clock: Clock, keeper: Keeper) -> tuple
             raise
         _tell(f"{error}; running on numpy instead")
         return Simulation(scene, "numpy", kernel_text, clock, keeper).solve()
-
-
-def _import_plotting() -> None:
-    """Plotting starts slowly, and an integration in C leaves the interpreter idle. A failure shows when it is used."""
-    with suppress(Exception):
-        import_module("geocosserat.results.picture")
 
 
 def _key(scene: Scene) -> str:
@@ -275,7 +264,7 @@ def generate(
 
 def _write(solution: Solution, files: Sequence[Path], fields: Mapping[str, Any]) -> None:
     save(solution, files[0])
-    write_summary(fields, files[1])
-    from geocosserat.results.picture import picture
+    write_summary(fields, files[2])
+    from geocosserat.results.picture import picture  # last: whatever happens to it, the results are there
 
-    picture(solution, files[2])
+    picture(solution, files[1])
