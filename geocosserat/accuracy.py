@@ -31,7 +31,7 @@ def ladder(accuracy: float) -> tuple[Setting, ...]:
     """Settings of growing cost: first the degree, then the elements; tolerances tighten along."""
     sizes = [(1, 8), (1, 16), (2, 16), (4, 16), (8, 16), (16, 16), (32, 16)]
     return tuple(
-        Setting(elements, degree, max(ROUND_OFF, accuracy * 10.0 ** -(1 + 0.5 * step)))
+        Setting(elements, degree, max(ROUND_OFF, accuracy * 10.0 ** -(2 + 0.5 * step)))
         for step, (elements, degree) in enumerate(sizes)
     )
 

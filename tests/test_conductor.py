@@ -169,7 +169,8 @@ def test_a_compiler_that_fails_is_an_error_only_if_c_was_asked_for(
     cantilever: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     """Else numpy takes over, and the compiler's words are on standard error."""
-    monkeypatch.setattr(compiling, "compiler", lambda: "/bin/false")
+    for module in (compiling, conductor):
+        monkeypatch.setattr(module, "compiler", lambda: "/bin/false")
     settings = ("run.elements=1", "run.degree=4", "run.frames=2")
     run = geocosserat.run(cantilever, settings=settings)
     assert run.backend == "numpy"
