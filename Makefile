@@ -24,7 +24,7 @@ demo: .venv/installed
 test: .venv/tools
 	$(BIN)/python -m ruff check .
 	$(BIN)/python -m mypy
-	$(BIN)/python -m pytest -n 2 $(TESTS)
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 $(TESTS)
 
 bench: .venv/tools
 	$(BIN)/python -m benchmarks

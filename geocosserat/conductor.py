@@ -149,7 +149,7 @@ def run(
     clock = Clock()
     try:
         attempt, estimate = _simulate(read, backend, clock, keeper)
-    except CompileError:
+    except (CompileError, InputError):
         if folder is not None:
             _give_back(folder)
         raise

@@ -17,6 +17,7 @@ from geocosserat.kernel.library import KernelText
 from geocosserat.kernel.load import load
 from geocosserat.kernel.native import NativeRod
 from geocosserat.kernel.pure import NumpyRod
+from geocosserat.model.errors import InputError
 from geocosserat.model.expressions import evaluate, switch_times
 from geocosserat.model.records import Scene
 from geocosserat.results.checkpoint import Keeper
@@ -25,6 +26,10 @@ from geocosserat.results.solution import Solution
 from geocosserat.solver.integrate import integrate
 from geocosserat.solver.trajectory import Trajectory
 from geocosserat.version import VERSION
+
+
+MOST_NUMBERS = 2**28
+"""States of all frames, in numbers: 2 GiB, and about as much again for the fields made of them."""
 
 
 class Clock:
@@ -107,6 +112,17 @@ def switches_of(scene: Scene) -> tuple[float, ...]:
     return tuple(t for load in loads for e in load for t in switch_times(e, scene.run.until, model.parameters))
 
 
+def _check_room(frames: int, size: int) -> None:
+    """Raises InputError if the states of all frames would not fit into memory."""
+    if frames * size > MOST_NUMBERS:
+        raise InputError(
+            f"at most {MOST_NUMBERS} numbers in a solution",
+            f"{frames} frames of {size} unknowns",
+            "keep fewer frames, or compute on fewer elements",
+            key="run.frames",
+        )
+
+
 class Simulation:
     """Simulates a scene at its setting, or at finer and finer ones until two agree; keeps checkpoints on the way."""
 
@@ -158,6 +174,7 @@ class Simulation:
         with self.clock("compile"):
             kernel = load(text, rod, self.backend)
         times = np.linspace(0.0, scene.run.until, scene.run.frames)
+        _check_room(scene.run.frames, len(rod.state))
         atol = tolerances(rod, setting.rtol, scene.run.atol, _unit_of_energy(scene, rod, kernel))
         done = self.keeper.begin(rung, rod.state, before)
         with self.clock("solve"), progress(scene.title) as report:

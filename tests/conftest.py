@@ -7,11 +7,15 @@ import signal
 from collections.abc import Iterator
 from pathlib import Path
 
+import hypothesis
 import pytest
 
 from geocosserat.kernel.compile import compiler
 
 ROOT = Path(__file__).parents[1]
+
+hypothesis.settings.register_profile("patient", deadline=None)  # no test is judged by a clock
+hypothesis.settings.load_profile("patient")
 
 
 @pytest.fixture(scope="session", autouse=True)

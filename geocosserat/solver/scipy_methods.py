@@ -15,6 +15,9 @@ from geocosserat.solver.counted import Counted
 from geocosserat.solver.settings import STEP_LIMIT, stands_still
 from geocosserat.solver.trajectory import Frame, Progress, Trajectory
 
+LEAST_RTOL = 100 * float(np.finfo(float).eps)
+"""scipy takes no smaller one, and warns."""
+
 
 def _integrate(
     method: type[OdeSolver],
@@ -32,7 +35,15 @@ def _integrate(
     states[0] = start
     done, steps, reason = 1, 0, ""
     try:
-        solver = method(_fresh(counted), times[0], start.copy(), times[-1], rtol=rtol, atol=atol, jac=counted.jacobian)
+        solver = method(
+            _fresh(counted),
+            times[0],
+            start.copy(),
+            times[-1],
+            rtol=max(rtol, LEAST_RTOL),
+            atol=atol,
+            jac=counted.jacobian,
+        )
     except (ArithmeticError, np.linalg.LinAlgError) as error:
         return Trajectory(times[:1].copy(), states[:1], counted.rates, counted.jacobians, 0, False, str(error))
     while solver.status == "running" and done < len(times):

@@ -127,6 +127,39 @@ def test_the_drag_on_a_free_rod_in_space_balances_its_loads_exactly(name: str, s
     assert np.all(np.abs(drag + load)[:3] <= 1e-13 * (1 + scale[:3]))
 
 
+def rigid_motions(r: SemiDiscrete, E: Array) -> Array:
+    """(6, N, 6): the twist, at every node, of each motion that changes no strain: unit twists of the left end, carried
+    along by D V + [E, B V] = 0."""
+    mesh, p = r.mesh, r.mesh.degree
+    V = np.zeros((6, mesh.elements * p + 1, 6))
+    V[:, 0] = np.eye(6)
+    for e, half in enumerate(mesh.half):
+        rows = np.zeros((6 * p, 6 * (p + 1)))
+        for q in range(p):
+            ad = oracle.floats(np.stack([oracle.bracket(E[:, e * p + q], unit) for unit in np.eye(6)], axis=1))
+            rows[6 * q : 6 * q + 6] = np.kron(mesh.reference.slopes[q], np.eye(6)) / half
+            rows[6 * q : 6 * q + 6] += np.kron(mesh.reference.values[q], ad)
+        inside = np.linalg.solve(rows[:, 6:], -rows[:, :6] @ V[:, e * p])
+        V[:, e * p + 1 : e * p + p + 1] = inside.reshape(p, 6, 6).swapaxes(0, 1)
+    return V
+
+
+@meshes
+@pytest.mark.parametrize("name", FREE)
+def test_the_total_drag_wrench_on_a_free_rod_is_minus_the_total_load_wrench(name: str, size: tuple[int, int]) -> None:
+    """Force and moment, plane and space, any state and mesh, to round-off: wrenches are added up as the rod itself
+    carries them to its left end, so that no motion that changes no strain meets any stress."""
+    r, exact, y = rod(name, *size), reference(name, *size), random_state(rod(name, *size), 14)
+    E, load, _ = (oracle.floats(part) for part in exact.move(T, y))
+    drag = np.zeros((6, exact.N))
+    twist = kernel(Case(name, *size, "numpy")).observe(T, y)[0]
+    drag[exact.kept] = -r.mesh.mass * np.einsum("nij,jn->in", oracle.floats(exact.friction), twist)
+    rigid = rigid_motions(r, E)
+    lost, gained = np.einsum("in,ink->k", drag, rigid), np.einsum("in,ink->k", load, rigid)
+    size_of_terms = np.einsum("in,ink->k", np.abs(drag) + np.abs(load), np.abs(rigid))
+    assert np.all(np.abs(lost + gained) <= 1e-13 * (1 + size_of_terms))
+
+
 @pytest.mark.parametrize("name", FREE)
 def test_the_drag_on_a_free_rod_balances_its_loads_in_force_and_moment_spectrally(name: str) -> None:
     """In the plane too, and moments about the origin: the gap falls by five digits from degree 6 to 12."""

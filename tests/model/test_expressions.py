@@ -91,7 +91,7 @@ def _rounding(value: mpmath.mpf) -> mpmath.mpf:
 
 
 @given(moderate)
-@settings(max_examples=1000, deadline=None)
+@settings(max_examples=1000)
 def test_evaluation_agrees_with_60_digits(e: Expression) -> None:
     """The value is the exact one to within what rounding each operation can do, bounded along the tree."""
     with mpmath.workdps(60):
@@ -112,7 +112,6 @@ def test_every_function_is_the_one_of_its_name(name: str) -> None:
 
 
 @given(trees)
-@settings(deadline=None)
 def test_an_array_is_evaluated_entry_by_entry(e: Expression) -> None:
     """Evaluation over an array gives what evaluation at each of its numbers gives."""
     u = np.array([0.0, 0.3, -1.0, 2.0])
@@ -161,7 +160,6 @@ def test_a_name_without_a_value_is_named() -> None:
 
 
 @given(trees, trees)
-@settings(deadline=None)
 def test_substitution_is_evaluation_of_the_replaced(e: Expression, inner: Expression) -> None:
     """Replacing a name by an expression and giving the name that expression's value are the same."""
     value = float(evaluate(inner, VALUES))
@@ -185,7 +183,6 @@ def test_substitution_cannot_explode() -> None:
 
 
 @given(trees)
-@settings(deadline=None)
 def test_a_constant_is_what_contains_no_name(e: Expression) -> None:
     """``constant`` gives the value exactly when ``symbols`` is empty."""
     if symbols(e):
@@ -195,7 +192,6 @@ def test_a_constant_is_what_contains_no_name(e: Expression) -> None:
 
 
 @given(st.floats(0.01, 0.99), st.floats(-100, 100).filter(lambda a: abs(a) > 1e-3), st.floats(0.1, 100))
-@settings(deadline=None)
 def test_a_step_is_found_where_it_is(place: float, slope: float, length: float) -> None:
     """Whatever the slope, its sign and the length: heaviside(a*(u - c)) steps at c."""
     e = parse("1 + kappa*heaviside(slope*(u - place*length))", {"u", "kappa", "slope", "place", "length"})

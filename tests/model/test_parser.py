@@ -60,7 +60,7 @@ def unfolded(e: Expression) -> Expression:
 
 
 @given(arithmetic)
-@settings(max_examples=1000, deadline=None)
+@settings(max_examples=1000)
 @example("-2**2")
 @example("2**-1**2")
 @example("-u*t/-k_3")
@@ -71,7 +71,7 @@ def test_arithmetic_means_what_python_means(text: str) -> None:
 
 
 @given(texts)
-@settings(max_examples=1000, deadline=None)
+@settings(max_examples=1000)
 def test_nothing_parses_that_python_reads_otherwise(text: str) -> None:
     """Of the right tokens in any order, only arithmetic gets through."""
     try:
@@ -82,7 +82,7 @@ def test_nothing_parses_that_python_reads_otherwise(text: str) -> None:
 
 
 @given(trees)
-@settings(max_examples=500, deadline=None)
+@settings(max_examples=500)
 @example(Negate(Number(2.0)))
 @example(Binary("**", Number(-2.0), Number(-2.0)))
 @example(Negate(Negate(Number(-0.0))))
@@ -93,7 +93,7 @@ def test_a_printed_expression_parses_to_itself(e: Expression) -> None:
 
 
 @given(st.text(max_size=300) | texts | st.text("()+-*/.e1u,=[]{}'\"_ \\\n", max_size=300))
-@settings(max_examples=1000, deadline=2000)
+@settings(max_examples=1000)
 def test_any_text_parses_or_is_refused(text: str) -> None:
     """No text raises anything but ExpressionError."""
     try:

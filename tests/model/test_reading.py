@@ -162,7 +162,7 @@ def test_an_error_survives_another_process() -> None:
 
 
 @given(st.binary(max_size=200) | st.text("[]{}=.,'\"\\#\n abc01", max_size=200).map(str.encode))
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 def test_any_bytes_are_a_scene_or_refused(tmp_path_factory: pytest.TempPathFactory, content: bytes) -> None:
     """No content of a file raises anything but InputError."""
     file = tmp_path_factory.getbasetemp() / "any.toml"
@@ -180,7 +180,7 @@ values = st.recursive(
 
 
 @given(st.dictionaries(words, values, max_size=4))
-@settings(max_examples=500, deadline=None)
+@settings(max_examples=500)
 def test_written_toml_reads_back(tables: dict[str, Any]) -> None:
     """``to_toml`` loses nothing of any tables: quotes, control characters, empty keys, lists of tables."""
     text = to_toml(tables)

@@ -85,6 +85,13 @@ def test_the_solution_does_not_depend_on_how_often_it_is_looked_at(method: str, 
     assert abs(many.rates - few.rates) <= 0.25 * few.rates
 
 
+@pytest.mark.parametrize("method", [m for m in METHODS if m != "cvode"])
+def test_a_tolerance_below_round_off_is_taken_without_a_warning(method: str) -> None:
+    """As the smallest that the method knows."""
+    found = integrate(forced(7), np.zeros(7), np.array([0.0, 0.5]), method, 1e-16, 1e-14)
+    assert found.reached
+
+
 @pytest.mark.parametrize("method", METHODS)
 def test_nothing_outside_the_time_span_is_asked_for(method: str) -> None:
     """A load may be undefined after the end of a scene: sqrt(end - t)."""
