@@ -18,8 +18,9 @@ from geocosserat.derivation.ends import axes_seen, conditions
 from geocosserat.derivation.notation import T, U, fields
 from geocosserat.derivation.orientation import axes_of, orientation, seen_in_frame
 from geocosserat.derivation.records import Equation, Equations, FieldEquations, Vector
+from geocosserat.model.effects.weight import Weight
 from geocosserat.model.expressions import Expression
-from geocosserat.model.records import RodModel, Weight
+from geocosserat.model.records import RodModel
 
 
 def derive(model: RodModel) -> FieldEquations:

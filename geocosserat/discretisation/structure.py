@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from geocosserat.algebra.groups import Group, group_of
+from geocosserat.model.effects.weight import Weight
 from geocosserat.model.expressions import (
     Binary,
     Call,
@@ -22,7 +23,7 @@ from geocosserat.model.expressions import (
     symbols,
     to_text,
 )
-from geocosserat.model.records import End, RodModel, Weight
+from geocosserat.model.records import End, RodModel
 
 Place = Literal["uniform", "point", "node", "time"]
 Row = tuple[str, ...]

@@ -7,74 +7,74 @@ from typing import Any, cast
 
 from geocosserat.algebra.groups import Group
 from geocosserat.model.checks import check_all_finite, check_finite
+from geocosserat.model.effects.catalogue import EFFECTS
+from geocosserat.model.effects.effect import Effect, Key, kind, kinds
 from geocosserat.model.expressions import Expression, Number
 from geocosserat.model.fields import (
-    ALONG_ROD_IN_TIME,
-    FIXED,
     IN_TIME,
     Names,
     Table,
     expression,
     matrix,
-    number,
-    numbers,
     vector,
     word,
 )
 from geocosserat.model.place import Found, Place
-from geocosserat.model.records import Effect, End, Frame, Vector, Weight
-from geocosserat.model.schema import (
-    AVAILABLE_EFFECTS,
-    AVAILABLE_ENDS,
-    EFFECT_KEYS,
-    END_KEYS,
-    END_KINDS,
-    ENDS_KEYS,
-    FRAMES,
-    MAX_EFFECTS,
-)
+from geocosserat.model.records import End, Frame, Vector
+from geocosserat.model.schema import END_KEYS, END_KINDS, FRAMES, MAX_EFFECTS, SIDES
 
 _AXES = ("x", "y", "z")
+assert EFFECTS  # importing them makes them known
 
 
-def read_ends(place: Place, values: Any, group: Group, names: Names, until: float) -> tuple[End, End]:
+def read_ends(table: Table, group: Group, names: Names, until: float) -> tuple[End, End]:
     """The left and the right end; clamped and free unless the scene says otherwise."""
-    ends = Table(place, values, ENDS_KEYS)
     left, right = (
-        _read_end(*ends.at(side), default, group, names, until) if side in ends else End(default)
-        for side, default in (("left", "clamped"), ("right", "free"))
+        _read_end(*table.at(side), default, group, names, until) if side in table else End(default)
+        for side, default in zip(SIDES, ("clamped", "free"), strict=True)
     )
     return left, right
+
+
+def read_joined(table: Table) -> bool:
+    """Whether the ends are joined; then neither is described by itself."""
+    place, joined = table.at("joined")
+    if "joined" not in table:
+        return False
+    if not isinstance(joined, bool):
+        raise place.wrong("true or false", joined, "write joined = true for a closed ring")
+    for side in SIDES if joined else ():
+        if side in table:
+            raise table.at(side)[0].wrong("no kind of its own", Found("one"), "joined ends are one point; remove this")
+    return joined
 
 
 def _read_end(place: Place, values: Any, default: str, group: Group, names: Names, until: float) -> End:
     table = Table(place, values, END_KEYS)
     kind = word(*table.at("kind"), END_KINDS) if "kind" in table else default
-    if kind in ("clamped", "driven", "joined"):
-        for key in ("force", "torque", "frame"):
-            if key in table:
-                raise table.at(key)[0].wrong(
-                    f"no load on a {kind} end",
-                    Found("one"),
-                    "a load cannot move it; remove this or free the end",
-                )
+    refused = {"clamped": ("force", "torque", "frame"), "driven": ("force", "torque", "frame"), "pinned": ("force",)}
+    for key in refused.get(kind, ()):
+        if key in table:
+            raise table.at(key)[0].wrong(
+                f"no {key if kind == 'pinned' else 'load'} on a {kind} end",
+                Found("one"),
+                "it cannot move it; remove this or free the end",
+            )
     if kind != "driven" and "twist" in table:
         raise table.at("twist")[0].wrong(
             f"no twist of a {kind} end", Found("one"), 'only kind = "driven" takes it; remove it'
         )
+    twist = force = torque = None
     if kind == "driven":
-        vector(*table.at("twist"), names, IN_TIME, group.twist)
-    force = torque = None
+        twist = vector(*table.at("twist"), names, IN_TIME, group.twist)
+        check_all_finite(table.at("twist")[0], twist, names, until)
     if "force" in table:
         force = vector(*table.at("force"), names, IN_TIME, _force_names(group))
         check_all_finite(table.at("force")[0], force, names, until)
     if "torque" in table:
         torque = _read_torque(*table.at("torque"), group, names, IN_TIME, until)
     frame = word(*table.at("frame"), FRAMES) if "frame" in table else "body"
-    if kind not in AVAILABLE_ENDS:
-        at, found = table.at("kind")
-        raise at.unavailable(" or ".join(AVAILABLE_ENDS), found, "change the kind of this end")
-    return End(kind, _none_if_zero(force), _none_if_zero(torque), cast(Frame, frame))
+    return End(kind, _none_if_zero(force), _none_if_zero(torque), cast(Frame, frame), twist)
 
 
 def _read_torque(
@@ -104,30 +104,30 @@ def read_effects(place: Place, values: Any, group: Group, names: Names, until: f
 
 
 def _read_effect(place: Place, values: dict[str, Any], group: Group, names: Names, until: float) -> Effect:
-    kind = word(place.at("kind"), values.get("kind"), tuple(EFFECT_KEYS))
-    table = Table(place, values, ("kind", *EFFECT_KEYS[kind]))
-    axes = _AXES[: group.space]
-    variables = ALONG_ROD_IN_TIME
-    match kind:
-        case "weight":
-            force = vector(*table.at("force"), names, variables, axes)
-            check_all_finite(table.at("force")[0], force, names, until)
-            return Weight(force)
-        case "follower":
-            vector(*table.at("force"), names, variables, _force_names(group))
-        case "couple":
-            _read_torque(*table.at("torque"), group, names, variables, until)
-        case "field":
-            vector(*table.at("moment"), names, variables, _force_names(group))
-            vector(*table.at("field"), names, IN_TIME, axes)
-        case "flow":
-            matrix(*table.at("gradient"), names, FIXED, axes)
-            numbers(*table.at("velocity"), names, axes)
-        case "trap":
-            number(*table.at("stiffness"), names, positive=True)
-            numbers(*table.at("centre"), names, axes)
-    available = " or ".join(AVAILABLE_EFFECTS)
-    raise place.at("kind").unavailable(available, kind, "remove this effect")
+    effect = kind(word(place.at("kind"), values.get("kind"), kinds()))
+    table = Table(place, values, ("kind", *effect.keys))
+    return effect(**{name: _read_value(*table.at(name), key, group, names, until) for name, key in effect.keys.items()})
+
+
+def _read_value(place: Place, value: Any, key: Key, group: Group, names: Names, until: float) -> Vector:
+    """A value of an effect as expressions, a matrix by rows, finite wherever and whenever it is used."""
+    axes, variables = _AXES[: group.space], frozenset(key.varies)
+    match key.shape:
+        case "scalar":
+            found: Vector = (expression(place, value, names, variables),)
+            check_finite(place, found[0], names, until)
+            return found
+        case "moment":
+            return _read_torque(place, value, group, names, variables, until)
+        case "matrix":
+            rows = matrix(place, value, names, variables, axes)
+            for i, row in enumerate(rows):
+                check_all_finite(place.at(i), row, names, until)
+            return tuple(e for row in rows for e in row)
+        case _:
+            found = vector(place, value, names, variables, _force_names(group) if key.shape == "body" else axes)
+            check_all_finite(place, found, names, until)
+            return found
 
 
 def _force_names(group: Group) -> Sequence[str]:

@@ -37,10 +37,12 @@ __all__ = [
     "Number",
     "Symbol",
     "constant",
+    "derivative",
     "evaluate",
     "jump_positions",
     "jumps",
     "parse",
+    "steps",
     "substitute",
     "switch_times",
     "symbols",
@@ -124,6 +126,56 @@ def _value(e: Expression, env: Mapping[str, float | NDArray[np.float64]]) -> Any
             return -_value(operand, env)
 
 
+# differentiation
+
+
+def derivative(e: Expression, name: str) -> Expression:
+    """d e / d name, with what is literally zero left out.
+
+    A step has the derivative zero (its jump is not seen); that of ``abs`` is 1 or -1, and 0 at zero.
+    """
+    if name not in symbols(e):
+        return Number(0.0)
+    match e:
+        case Symbol():
+            return Number(1.0)
+        case Negate(operand):
+            return -derivative(operand, name)
+        case Binary("+", left, right):
+            return derivative(left, name) + derivative(right, name)
+        case Binary("-", left, right):
+            return derivative(left, name) - derivative(right, name)
+        case Binary("*", left, right):
+            return derivative(left, name) * right + left * derivative(right, name)
+        case Binary("/", left, right):
+            return (derivative(left, name) - e * derivative(right, name)) / right
+        case Binary("**", base, power):
+            fixed, moving = Number(0.0) * base, Number(0.0) * base
+            if name in symbols(base):
+                fixed = power * base ** (power - 1) * derivative(base, name)
+            if name in symbols(power):
+                moving = e * Call("log", base) * derivative(power, name)
+            return fixed + moving
+        case Call(function, argument):
+            return _SLOPE[function](argument) * derivative(argument, name)
+    raise TypeError(f"expected an expression, found {type(e).__name__}")
+
+
+_SLOPE: dict[str, Callable[[Expression], Expression]] = {
+    "sin": lambda x: Call("cos", x),
+    "cos": lambda x: -Call("sin", x),
+    "tan": lambda x: 1 + Call("tan", x) ** 2,
+    "exp": lambda x: Call("exp", x),
+    "log": lambda x: 1 / x,
+    "sqrt": lambda x: 0.5 / Call("sqrt", x),
+    "tanh": lambda x: 1 - Call("tanh", x) ** 2,
+    "sinh": lambda x: Call("cosh", x),
+    "cosh": lambda x: Call("sinh", x),
+    "abs": lambda x: 2 * Call("heaviside", x) - 1,
+    "heaviside": lambda x: Number(0.0),
+}
+
+
 # substitution
 
 
@@ -199,6 +251,11 @@ def _text(e: Expression) -> tuple[str, int]:
 
 
 # steps
+
+
+def steps(e: Expression) -> tuple[Expression, ...]:
+    """The arguments of all ``heaviside`` in ``e``."""
+    return tuple(node.argument for node in _walk(e) if isinstance(node, Call) and node.function == "heaviside")
 
 
 def jumps(e: Expression, variable: str = "u") -> tuple[Expression, ...]:

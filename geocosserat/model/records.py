@@ -12,6 +12,7 @@ from typing import Literal, TypeAlias
 
 from geocosserat.algebra.groups import Group
 from geocosserat.model.describe import matrix_text, named_text, number_text, vector_text
+from geocosserat.model.effects.effect import Effect
 from geocosserat.model.expressions import Expression
 
 Vector: TypeAlias = tuple[Expression, ...]
@@ -24,17 +25,21 @@ Backend: TypeAlias = Literal["auto", "c", "numpy"]
 class End:
     """One end of the rod.
 
-    ``kind``: "clamped" (does not move) or "free". ``force`` (force, 2 or 3 components) and ``torque``
-    (force x length, 1 component in the plane, 3 in space) are the load on a free end, expressions of ``t``;
-    None where there is none. ``frame``: "body" (the load turns with the end) or "world" (a dead load).
+    ``kind``: "clamped" (does not move), "free", "pinned" (turns about a fixed point) or "driven". ``force`` (force, 2
+    or 3 components) and ``torque`` (force x length, 1 component in the plane, 3 in space) are the load on a free end,
+    on a pinned one only the torque, expressions of ``t``; None where there is none. ``frame``: "body" (the load turns
+    with the end) or "world" (a dead load). ``twist``: of a driven end, in its moving frame, expressions of ``t``.
     """
 
     kind: str
     force: Vector | None = None
     torque: Vector | None = None
     frame: Frame = "body"
+    twist: Vector | None = None
 
     def __str__(self) -> str:
+        if self.twist is not None:
+            return f"{self.kind} with twist {vector_text(self.twist)}"
         load = [f"{name} {vector_text(value)}" for name, value in self._loads()]
         return ", ".join([self.kind, *load, *([f"fixed in the {self.frame}"] if load else [])])
 
@@ -46,26 +51,15 @@ class End:
 
 
 @dataclass(frozen=True, slots=True)
-class Weight:
-    """A force density fixed in the world (force / length, 2 or 3 components), expressions of ``u``, ``t``."""
-
-    force: Vector
-
-    def __str__(self) -> str:
-        return f"weight {vector_text(self.force)} per length, fixed in the world"
-
-
-Effect: TypeAlias = Weight
-
-
-@dataclass(frozen=True, slots=True)
 class RodModel:
     """The rod and what acts on it: everything the equations of motion are derived from.
 
     ``length``: at rest. ``stiffness``: K, d x d, symmetric and positive definite, in the order of
     ``group.strain`` (force for stretch and shear, force x length² for bend and twist), expressions of ``u``.
     ``friction``: Γ, likewise in the order of ``group.twist`` (force x time / length² for translations, force
-    x time for rotations). ``reference``: the turn at rest, expressions of ``u``. ``frozen``: modes held so.
+    x time for rotations), where a rotation may have none. ``reference``: the turn at rest, expressions of ``u`` and,
+    if it is active, of ``t``. ``frozen``: modes held at their reference, whatever their stiffness. ``joined``: the ends
+    are one point; ``left`` and ``right`` are then free of load.
     """
 
     group: Group
@@ -77,7 +71,13 @@ class RodModel:
     left: End = End("clamped")
     right: End = End("free")
     effects: tuple[Effect, ...] = ()
+    joined: bool = False
     parameters: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def held(self) -> tuple[bool, ...]:
+        """For each mode, whether it is frozen."""
+        return tuple(name in self.frozen for name in self.group.strain)
 
     def __str__(self) -> str:
         group = self.group
@@ -87,8 +87,7 @@ class RodModel:
             f"  friction   {matrix_text(self.friction, group.twist)}",
             f"  reference  {named_text(self.reference, group.strain)}",
             *([f"  frozen     {', '.join(self.frozen)}"] if self.frozen else []),
-            f"  left end   {self.left}",
-            f"  right end  {self.right}",
+            *(["  ends       joined"] if self.joined else [f"  left end   {self.left}", f"  right end  {self.right}"]),
             *(f"  effect     {effect}" for effect in self.effects),
         ]
         if self.parameters:

@@ -7,24 +7,14 @@ from typing import Final
 SCENE_KEYS: Final = ("title", "parameters", "rod", "start", "ends", "effects", "run")
 ROD_KEYS: Final = ("motion", "length", "stiffness", "friction", "reference", "frozen", "law")
 START_KEYS: Final = ("strain", "position", "angle", "rotation")
-ENDS_KEYS: Final = ("left", "right")
+ENDS_KEYS: Final = ("left", "right", "joined")
+SIDES: Final = ("left", "right")
 END_KEYS: Final = ("kind", "force", "torque", "frame", "twist")
 RUN_KEYS: Final = (
     "until", "frames", "accuracy", "elements", "degree", "method", "rtol", "atol", "backend",
 )  # fmt: skip
-EFFECT_KEYS: Final[dict[str, tuple[str, ...]]] = {
-    "weight": ("force",),
-    "follower": ("force",),
-    "couple": ("torque",),
-    "field": ("moment", "field"),
-    "flow": ("gradient", "velocity"),
-    "trap": ("stiffness", "centre"),
-}
-
 MOTIONS: Final = ("planar", "spatial")
-END_KINDS: Final = ("clamped", "free", "pinned", "driven", "joined")
-AVAILABLE_ENDS: Final = ("clamped", "free")
-AVAILABLE_EFFECTS: Final = ("weight",)
+END_KINDS: Final = ("clamped", "free", "pinned", "driven")
 FRAMES: Final = ("body", "world")
 METHODS: Final = ("cvode", "radau", "bdf", "lsoda")
 BACKENDS: Final = ("auto", "c", "numpy")
@@ -42,5 +32,5 @@ DEFAULT_FRAMES: Final = 51
 def scene_paths() -> tuple[str, ...]:
     """Every dotted path that can be set whatever the scene holds: ``title``, ``rod.length`` ..."""
     tables = {"rod": ROD_KEYS, "start": START_KEYS, "run": RUN_KEYS}
-    ends = [f"ends.{side}.{key}" for side in ENDS_KEYS for key in END_KEYS]
+    ends = ["ends.joined", *(f"ends.{side}.{key}" for side in SIDES for key in END_KEYS)]
     return ("title", *(f"{table}.{key}" for table, keys in tables.items() for key in keys), *ends)

@@ -6,9 +6,10 @@ import tomllib
 from collections.abc import Iterable
 from typing import Any
 
+from geocosserat.model.effects.effect import kind, kinds
 from geocosserat.model.parser import nearest
 from geocosserat.model.place import Found, Place, shown
-from geocosserat.model.schema import EFFECT_KEYS, scene_paths
+from geocosserat.model.schema import scene_paths
 
 
 def apply_settings(values: dict[str, Any], settings: Iterable[str], file: str) -> None:
@@ -72,7 +73,7 @@ def _steps(values: dict[str, Any], key: str, file: str) -> list[str]:
     if steps[0] == "parameters" and ".".join(steps[1:]) in names:
         return steps
     if steps[0] == "effects":
-        keys = {"kind", *(each for some in EFFECT_KEYS.values() for each in some)}
+        keys = {"kind", *(each for name in kinds() for each in kind(name).keys)}
         if len(steps) == 1 or (len(steps) > 2 and steps[1].isdigit() and steps[2] in keys):
             return steps
         index = steps[1] if steps[1].isdigit() else "0"

@@ -13,8 +13,9 @@ from geocosserat.algebra.exponential import rotation_from_vector, vector_from_ro
 from geocosserat.algebra.groups import SE3
 from geocosserat.discretisation.pose import plane_rotation
 from geocosserat.discretisation.semidiscrete import SemiDiscrete
+from geocosserat.model.effects.weight import Weight
 from geocosserat.model.expressions import Binary, Expression, Negate, Number, Symbol, constant, substitute
-from geocosserat.model.records import End, RodModel, Scene, Start, Weight
+from geocosserat.model.records import End, RodModel, Scene, Start
 
 Array = NDArray[np.float64]
 Vector = tuple[Expression, ...]

@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 
 from geocosserat.algebra.groups import SE2, SE3
+from geocosserat.model.effects.weight import Weight
 from geocosserat.model.errors import InputError
 from geocosserat.model.expressions import Number, evaluate, parse
-from geocosserat.model.records import End, RunSettings, Weight
+from geocosserat.model.records import End, RunSettings
 from geocosserat.model.scene import load_scene
 from tests.model.refusals import REFUSALS, SPATIAL_REFUSALS
 from tests.model.scenes import PLANAR, SPATIAL, changed
