@@ -96,14 +96,18 @@ def run(
 @main.command()
 @click.argument("scene", type=click.Path())
 @click.option("--form", default="intrinsic", show_default=True, help="Which form of the equations.")
+@click.option("--chart", metavar="NAME", help="Coordinates for --form coordinates, e.g. rotation-vector or euler.")
 @click.option("--latex", is_flag=True, help="Print LaTeX (for amsmath).")
 @SETTINGS
 @JSON
 @_one_message
-def derive(scene: str, form: str, latex: bool, settings: tuple[str, ...], as_json: bool) -> None:
+def derive(
+    scene: str, form: str, chart: str | None, latex: bool, settings: tuple[str, ...], as_json: bool
+) -> None:
     """Print the equations that SCENE will solve."""
     encoding = sys.stdout.encoding or "ascii"
-    equations = derive_equations(scene, form, settings=settings, unicode=as_json or "utf" in encoding.lower())
+    unicode = as_json or "utf" in encoding.lower()
+    equations = derive_equations(scene, form, chart=chart, settings=settings, unicode=unicode)
     if as_json:
         _print_json({**equations.fields, "text": equations.text, "latex": equations.latex})
     else:

@@ -19,7 +19,8 @@ from typing import Any
 from geocosserat.accuracy import Setting
 from geocosserat.codegen.identity import identity
 from geocosserat.discretisation.semidiscrete import discretise
-from geocosserat.discretisation.structure import RodStructure, structure_of
+from geocosserat.discretisation.structure import RodStructure
+from geocosserat.discretisation.structuring import structure_of
 from geocosserat.kernel.compile import CompileError, compiler
 from geocosserat.kernel.library import KernelText, find, store
 from geocosserat.model.errors import InputError
@@ -195,30 +196,52 @@ class Equations:
 
 
 def derive(
-    scene: SceneLike, form: str = "intrinsic", *, settings: Sequence[str] = (), unicode: bool = True
+    scene: SceneLike,
+    form: str = "intrinsic",
+    *,
+    chart: str | None = None,
+    settings: Sequence[str] = (),
+    unicode: bool = True,
 ) -> Equations:
     """The equations of motion of a scene, derived symbolically and specialised to it.
 
-    Raises InputError for a wrong scene or an unknown form.
+    chart: for the form "coordinates", "angle" in the plane; in space "rotation-vector" (the default),
+    "quaternion", "cayley", "euler" or "matrix".
+
+    Raises InputError for a wrong scene, an unknown form, the form "limit" of a rod without frozen modes, a chart that
+    the motion has not, and a chart for a form that takes none.
     """
+    from geocosserat.derivation.charts import chart_names
     from geocosserat.derivation.equations import derive as derive_equations
-    from geocosserat.derivation.forms import FORMS, document
+    from geocosserat.derivation.forms import CHARTED, FORMS, document
     from geocosserat.derivation.printing import to_latex, to_text
 
     read = load_any(scene, settings)
     if form not in FORMS:
         raise InputError(f"one of {', '.join(FORMS)}", repr(form), "choose one of these", key="--form")
+    charts = chart_names(read.model.group) if form in CHARTED else ()
+    if chart is not None and not charts:
+        takes = " or ".join(f"--form {name}" for name in CHARTED)
+        raise InputError(f"no chart for the form {form}", repr(chart), f"leave it out, or say {takes}", key="--chart")
+    if chart is not None and chart not in charts:
+        choices = f"one of {', '.join(charts)}" if charts[1:] else charts[0]
+        expected = f"{choices}, for a {structure_of(read.model).motion} rod"
+        raise InputError(expected, repr(chart), "choose one of these, or leave it out", key="--chart")
     equations = derive_equations(read.model)
-    laid_out = document(equations, form)
+    laid_out = document(equations, form, chart)
     structure = structure_of(read.model)
     fields = {
         "scene": read.path or read.title,
         "motion": structure.motion,
         "form": form,
+        "chart": (chart or charts[0]) if charts else None,
         "fields": list(equations.fields),
+        "terms": list(equations.terms),
+        "multipliers": [f.func.__name__ for f in equations.multipliers],
+        "algebraic": list(equations.algebraic),
         "parameters": dict(read.model.parameters),
         "coefficients": [c.name for c in structure.coefficients],
-        "sees_the_world": structure.world,
+        "sees_the_world": structure.sight != "nothing",
     }
     return Equations(form, to_text(laid_out, unicode), to_latex(laid_out), fields)
 

@@ -27,7 +27,6 @@ from geocosserat.solver.integrate import integrate
 from geocosserat.solver.trajectory import Trajectory
 from geocosserat.version import VERSION
 
-
 MOST_NUMBERS = 2**28
 """States of all frames, in numbers: 2 GiB, and about as much again for the fields made of them."""
 

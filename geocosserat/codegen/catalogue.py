@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from geocosserat.codegen.source import generate
-from geocosserat.discretisation.structure import structure_of
+from geocosserat.discretisation.structuring import structure_of
 from geocosserat.model.scene import load_scene
 from geocosserat.shipped import shipped
 

@@ -15,6 +15,7 @@ def _arrays(rod: SemiDiscrete) -> dict[str, Array]:
         "half": rod.mesh.half,
         "mass": rod.mesh.mass,
         "u": rod.mesh.u,
+        "u_point": rod.mesh.u_point,
         "tables": rod.tables,
         "uniform": rod.uniform,
         "point": rod.point.ravel(),
@@ -31,9 +32,9 @@ def _c_array(name: str, values: Iterable[float]) -> str:
 
 
 def _header(rod: SemiDiscrete, until: float) -> str:
-    mesh, group = rod.mesh, rod.structure.group
+    mesh = rod.mesh
     arrays = {**_arrays(rod), "scale": 1 / mesh.half, "share": 1 / mesh.mass}
-    names = ", ".join(f'"{name}"' for name in group.strain)
+    names = ", ".join(f'"{name}"' for name in rod.structure.state_names)
     return (
         "/* The numbers of one scene, for the kernel rod.c. */\n"
         f"enum {{ ELEMENTS = {mesh.elements}, POINTS = {mesh.elements * mesh.degree}, SIZE = {len(rod.state)} }};\n"
@@ -52,7 +53,8 @@ def take_away(source: KernelSource, rod: SemiDiscrete, until: float, title: str,
 
     def render(template: str) -> str:
         known = {"title": one_line(title), "degree": rod.mesh.degree}
-        return environment().get_template(template).render(**known, d=rod.structure.group.dimension)
+        frozen = [int(held) for held in rod.structure.frozen]
+        return environment().get_template(template).render(**known, d=rod.structure.group.dimension, frozen=frozen)
 
     if backend == "c":
         return {
@@ -67,7 +69,7 @@ def take_away(source: KernelSource, rod: SemiDiscrete, until: float, title: str,
         "elements": rod.mesh.elements,
         "degree": rod.mesh.degree,
         "until": until,
-        "turn": list(rod.structure.group.strain),
+        "state": list(rod.structure.state_names),
         "arrays": {name: [float(v) for v in np.ravel(values)] for name, values in _arrays(rod).items()},
     }
     return {

@@ -4,7 +4,7 @@ A tape is what common-subexpression elimination leaves behind. It is the only fo
 differentiated and printed: trees repeat themselves, tapes do not.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import sympy as sp
@@ -29,6 +29,12 @@ class Tape:
         own = {name for name, _ in self.steps}
         used = {s for e in [e for _, e in self.steps] + [e for _, e in self.outputs] for s in e.free_symbols}
         return frozenset(s.name for s in used - own)
+
+
+    def only(self, names: Iterable[str]) -> "Tape":
+        """The same with just the outputs of these names, as far as there are such, and the steps that they need."""
+        wanted = set(names)
+        return _prune(Tape(self.steps, tuple((name, e) for name, e in self.outputs if name in wanted)))
 
 
 def record(outputs: Mapping[str, sp.Expr], prefix: str = "x", given: Mapping[str, sp.Expr] | None = None) -> Tape:

@@ -1,7 +1,7 @@
 """The field equations of one rod, derived from its group and its laws: nothing in them is transcribed.
 
 From the structure constants: compatibility dE/dt = V' + ad_E V and balance S' + ad*_E S + j = 0. From the
-model: the stress S(E), the wrench j, the ends. What the scene lacks does not occur.
+model: the stress S(E), the frozen modes, the wrench j, the ends. What the scene lacks does not occur.
 """
 
 from __future__ import annotations
@@ -12,13 +12,13 @@ import numpy as np
 import sympy as sp
 
 from geocosserat.algebra.groups import Array
+from geocosserat.derivation import acting
 from geocosserat.derivation.convert import exact, to_sympy
 from geocosserat.derivation.distribute import distributed
-from geocosserat.derivation.ends import axes_seen, conditions
+from geocosserat.derivation.ends import conditions, joined
 from geocosserat.derivation.notation import T, U, fields
-from geocosserat.derivation.orientation import axes_of, orientation, seen_in_frame
+from geocosserat.derivation.orientation import axes_seen, orientation, place, places_seen
 from geocosserat.derivation.records import Equation, Equations, FieldEquations, Vector
-from geocosserat.model.effects.weight import Weight
 from geocosserat.model.expressions import Expression
 from geocosserat.model.records import RodModel
 
@@ -26,39 +26,51 @@ from geocosserat.model.records import RodModel
 def derive(model: RodModel) -> FieldEquations:
     """The equations of that rod; algebra only, a fraction of a second.
 
-    Raises ValueError for frozen modes, kinds of end and effects that are not available, and ExpressionError
-    for coefficients that are infinite or not real.
+    Raises ValueError for kinds of end that there are not, and ExpressionError for coefficients that are infinite
+    or not real.
     """
-    _refuse_the_unavailable(model)
-    group = model.group
-    E, V = fields(group.strain), fields(group.twist)
+    group, held = model.group, model.held
+    V = fields(group.twist)
     zero = (sp.S.Zero,) * group.dimension
 
-    # laws
+    # laws: a frozen mode is its reference, and its stress is what keeps it there
     stiffness, friction = _matrix(model.stiffness), _matrix(model.friction)
     reference = _vector(model.reference)
-    strain = _sum(E, tuple(-e for e in reference))
-    stress_values, drag = _times(stiffness, strain), _times(friction, V)
-    weight = _sum((sp.S.Zero,) * group.space, *(_vector(effect.force) for effect in model.effects))
-    push = (*seen_in_frame(group, weight), *zero[group.space :])
-    wrench_values = tuple(p - d for p, d in zip(push, drag, strict=True))
+    E = _chosen(held, reference, fields(group.strain))
+    strain = _chosen(held, zero, _sum(E, tuple(-e for e in reference)))
+    stress_values = _chosen(held, fields(group.stress), _times(stiffness, strain))
+    push = acting.push(group, model.effects)
+    medium = acting.medium(group, model.effects)
+    slip = _sum(V, tuple(-v for v in medium))
+    carried = _times(friction, medium)
+    wrench_values = tuple(p - d for p, d in zip(push, _times(friction, slip), strict=True))
     S = _where_present(fields(group.stress), stress_values)
     j = _where_present(fields(group.wrench), wrench_values)
 
+    # ends
+    length = exact(model.length)
+    if model.joined:
+        left, right = joined(group, length, V, S)
+    else:
+        left = conditions(group, model.left, "left", sp.S.Zero, V, S)
+        right = conditions(group, model.right, "right", length, V, S)
+
     # the world
-    axes = axes_of(weight) | axes_seen(group, model.left) | axes_seen(group, model.right)
-    frame = orientation(group, axes, V, E)
+    sides = (*push, *carried, *left.load, *right.load)
+    places = places_seen(group, sides)
+    here = place(group, places, V, E)
+    frame = orientation(group, axes_seen(group, (*sides, *here.rates)), V, E)
 
     # kinematics and balance
     coad = group.coad(_array(E))
     compatibility = _equations((e.diff(T) for e in E), _sum(_slope(V), group.bracket(_array(E), _array(V))))
     balance = _equations(_sum(_slope(S), coad @ _array(S), j), zero)
     # where the law steps the stress is continuous and the turn is not: there the stress stays a field
-    steps = any(U in h.free_symbols for e in (*stiffness.ravel(), *reference) for h in e.atoms(sp.Heaviside))
-    elastic = S if steps else stress_values
-    motion = (distributed(e) for e in _sum(_slope(elastic), coad @ _array(elastic), push))
+    elastic = S if _steps(stiffness, reference, held) else stress_values
+    motion = (distributed(e) for e in _sum(_slope(elastic), coad @ _array(elastic), carried, push))
 
-    symmetric = all(stiffness[a, b] == stiffness[b, a] for a, b in np.ndindex(stiffness.shape))
+    free = [a for a in range(group.dimension) if not held[a]]
+    symmetric = all(stiffness[a, b] == stiffness[b, a] for a in free for b in free)
     return FieldEquations(
         model=model,
         turn=E,
@@ -66,28 +78,34 @@ def derive(model: RodModel) -> FieldEquations:
         stress=tuple(s for s in S if s != 0),
         wrench=tuple(f for f in j if f != 0),
         orientation=frame,
+        position=here,
+        multipliers=tuple(s for s, frozen in zip(S, held, strict=True) if frozen),
         compatibility=compatibility,
         balance=balance,
-        stress_law=tuple(e for e in _equations(S, stress_values) if e.left != 0),
+        stress_law=tuple(e for e in _equations(S, stress_values) if e.left not in (0, e.right)),
         wrench_law=tuple(e for e in _equations(j, wrench_values) if e.left != 0),
         orientation_rates=_equations((f.diff(T) for f in frame.fields), frame.rates),
         orientation_slopes=_equations((f.diff(U) for f in frame.fields), frame.slopes),
-        motion=_equations(drag, motion),
-        left=conditions(group, model.left, "left", sp.S.Zero, V, S),
-        right=conditions(group, model.right, "right", exact(model.length), V, S),
+        position_rates=_equations((f.diff(T) for f in here.fields), here.rates),
+        position_slopes=_equations((f.diff(U) for f in here.fields), here.slopes),
+        motion=_equations(_times(friction, V), motion),
+        left=left,
+        right=right,
         energy=_quadratic(stiffness / 2, strain) if symmetric else None,
-        dissipation=_quadratic(friction, V),
+        dissipation=_quadratic(friction, slip),
     )
 
 
-def _refuse_the_unavailable(model: RodModel) -> None:
-    if model.frozen:
-        found = ", ".join(model.frozen)
-        raise ValueError(f"frozen: expected no frozen modes, found {found}; not available yet, remove them")
-    for effect in model.effects:
-        if not isinstance(effect, Weight):
-            found = type(effect).__name__
-            raise ValueError(f"effects: expected weight, found {found}; not available yet, remove it")
+def _steps(stiffness: Array, reference: Vector, held: Sequence[bool]) -> bool:
+    """Whether the law of a free mode has a step in u."""
+    free = [a for a, frozen in enumerate(held) if not frozen]
+    laws = (*(stiffness[a, b] for a in free for b in free), *(reference[a] for a in free))
+    return any(U in h.free_symbols for e in laws for h in e.atoms(sp.Heaviside))
+
+
+def _chosen(held: Sequence[bool], frozen: Vector, free: Vector) -> Vector:
+    """For each component the one or the other."""
+    return tuple(a if this else b for this, a, b in zip(held, frozen, free, strict=True))
 
 
 def _vector(expressions: Iterable[Expression]) -> Vector:
@@ -119,9 +137,7 @@ def _quadratic(matrix: Array, vector: Vector) -> sp.Expr:
     """The quadratic form of a matrix, each product of two components once."""
     d = len(vector)
     squares = (matrix[a, a] * vector[a] ** 2 for a in range(d))
-    products = (
-        (matrix[a, b] + matrix[b, a]) * vector[a] * vector[b] for a in range(d) for b in range(a + 1, d)
-    )
+    products = ((matrix[a, b] + matrix[b, a]) * vector[a] * vector[b] for a in range(d) for b in range(a + 1, d))
     return sp.Add(*squares, *products)
 
 

@@ -1,7 +1,8 @@
-"""How the moving frame sees the world: the orientation fields that a scene needs, and how they evolve.
+"""Where a rod sees the world: the orientation and the place that a scene needs as fields, and how they evolve.
 
-In the plane the field is the angle theta. In space a direction of the world is carried only where it is
-called for: one world axis seen in the moving frame, (e1z, e2z, e3z) for z, closes on itself.
+In the plane the orientation is the angle theta. In space a direction of the world is carried only where it is
+called for: one world axis seen in the moving frame, (e1z, e2z, e3z) for z, closes on itself. A coordinate of the
+place needs its own axis in space, and the angle in the plane.
 """
 
 from __future__ import annotations
@@ -13,14 +14,14 @@ import numpy as np
 import sympy as sp
 
 from geocosserat.algebra.groups import Array, Group
-from geocosserat.derivation.notation import field
+from geocosserat.derivation.notation import field, field_names, fields
 
 AXES = "xyz"
 
 
 @dataclass(frozen=True)
-class Orientation:
-    """Fields that give the world's directions in the moving frame, with their rates.
+class Carried:
+    """Fields that are carried along with the rod, angles and directions (dimensionless) or coordinates (lengths).
 
     ``rates`` and ``slopes`` are the right-hand sides of the time and the space derivative of each field.
     """
@@ -30,13 +31,11 @@ class Orientation:
     slopes: tuple[sp.Expr, ...] = ()
 
 
-def orientation(
-    group: Group, axes: Iterable[int], twist: Sequence[sp.Expr], turn: Sequence[sp.Expr]
-) -> Orientation:
+def orientation(group: Group, axes: Iterable[int], twist: Sequence[sp.Expr], turn: Sequence[sp.Expr]) -> Carried:
     """The fields needed to see those world axes (0 for x, ...): R' = R hat(turn) and dR/dt = R hat(twist)."""
     needed = sorted(set(axes))
     if not needed:
-        return Orientation()
+        return Carried()
     R = rotation(group)
     rates, slopes = (R @ group.rotation(group.hat(np.array(X, dtype=object))) for X in (twist, turn))
     if group.space == 2:
@@ -45,9 +44,9 @@ def orientation(
         generator = np.zeros((group.size, group.size), dtype=object)
         generator[1:, 1:] = [[entry.diff(theta).subs(theta, 0) for entry in row] for row in R]
         per_radian = group.vee(generator)[-1]
-        return Orientation((theta,), (twist[-1] / per_radian,), (turn[-1] / per_radian,))
+        return Carried((theta,), (twist[-1] / per_radian,), (turn[-1] / per_radian,))
     where = [(axis, i) for axis in needed for i in range(group.space)]
-    return Orientation(*(tuple(matrix[index] for index in where) for matrix in (R, rates, slopes)))
+    return Carried(*(tuple(matrix[index] for index in where) for matrix in (R, rates, slopes)))
 
 
 def rotation(group: Group) -> Array:
@@ -58,11 +57,30 @@ def rotation(group: Group) -> Array:
     return np.array([[field(f"e{i + 1}{axis}") for i in range(3)] for axis in AXES], dtype=object)
 
 
-def axes_of(vector: Sequence[sp.Expr]) -> frozenset[int]:
-    """The world axes along which a vector has a component."""
-    return frozenset(axis for axis, x in enumerate(vector) if x != 0)
+def place(group: Group, axes: Iterable[int], twist: Sequence[sp.Expr], turn: Sequence[sp.Expr]) -> Carried:
+    """Those coordinates (0 for x, ...) of the point r that a cross-section sits at: r' = R h and dr/dt = R v."""
+    needed = sorted(set(axes))
+    if not needed:
+        return Carried()
+    R, n = rotation(group), group.space
+    rates, slopes = (R @ np.array(X[:n], dtype=object) for X in (twist, turn))
+    return Carried(position(group, needed), tuple(rates[needed]), tuple(slopes[needed]))
 
 
-def seen_in_frame(group: Group, vector: Sequence[sp.Expr]) -> tuple[sp.Expr, ...]:
-    """Components in the moving frame of a vector with those world components, R^T vector."""
-    return tuple(rotation(group).T @ np.array(vector, dtype=object))
+def position(group: Group, axes: Iterable[int] | None = None) -> tuple[sp.Expr, ...]:
+    """The fields x, y(, z) of the place in the world (lengths), or those of the axes named."""
+    return fields(AXES[axis] for axis in (range(group.space) if axes is None else axes))
+
+
+def axes_seen(group: Group, expressions: Iterable[sp.Expr]) -> frozenset[int]:
+    """The world axes whose directions occur in expressions; in the plane all of them where the angle does."""
+    names = field_names(expressions)
+    if group.space == 2:
+        return frozenset(range(2)) if "theta" in names else frozenset()
+    return frozenset(k for k, axis in enumerate(AXES) if any(f"e{i}{axis}" in names for i in (1, 2, 3)))
+
+
+def places_seen(group: Group, expressions: Iterable[sp.Expr]) -> frozenset[int]:
+    """The coordinates of the place that occur in expressions."""
+    names = field_names(expressions)
+    return frozenset(k for k, axis in enumerate(AXES[: group.space]) if axis in names)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 import unicodedata
 from collections.abc import Iterable
 
@@ -12,6 +13,7 @@ from geocosserat.derivation.writing import MINUS, PRIME, Latex, Script, Text
 
 _TERMS_A_ROW = 6
 _WIDEST_LEFT = 12
+_NARROWEST = 40
 
 
 def to_text(document: Document, unicode: bool = True, width: int = 100) -> str:
@@ -61,8 +63,8 @@ def _text_body(section: Section, script: Script, width: int) -> Iterable[str]:
         column = column if column <= _WIDEST_LEFT else 0
         for equation, left in zip(section.equations, lefts, strict=True):
             yield from _broken(equation, left, column, script, width)
-    if section.remark:
-        yield f"  {section.remark}"
+    for line in section.remark.splitlines():
+        yield from textwrap.wrap(line, max(width, _NARROWEST), initial_indent="  ", subsequent_indent="  ")
 
 
 def _broken(equation: Equation, left: str, column: int, script: Script, width: int) -> Iterable[str]:
@@ -83,12 +85,10 @@ def _broken(equation: Equation, left: str, column: int, script: Script, width: i
 
 
 def _latex_body(section: Section, script: Script) -> Iterable[str]:
-    if not section.equations:
-        return
-    if section.inline:
+    if section.equations and section.inline:
         conditions = (f"{script.write(e.left)} = {script.write(e.right)}" for e in section.equations)
         yield from (r"\begin{equation*}", r",\quad ".join(conditions), r"\end{equation*}")
-    else:
+    elif section.equations:
         rows = (row for e in section.equations for row in _rows(e, script))
         yield from (r"\begin{align*}", " \\\\\n".join(rows), r"\end{align*}")
     if section.remark:

@@ -8,8 +8,10 @@ from dataclasses import dataclass
 import sympy as sp
 
 from geocosserat.algebra.groups import Group
-from geocosserat.derivation.notation import field_names, parameter_names
-from geocosserat.derivation.orientation import Orientation
+from geocosserat.derivation.convert import to_sympy
+from geocosserat.derivation.notation import field_names, is_field, parameter_names
+from geocosserat.derivation.orientation import Carried
+from geocosserat.model.expressions import symbols
 from geocosserat.model.records import RodModel
 
 Vector = tuple[sp.Expr, ...]
@@ -36,7 +38,10 @@ Equations = tuple[Equation, ...]
 
 @dataclass(frozen=True)
 class EndConditions:
-    """What holds at one end at all times; ``position``: its u. ``load``: in moving-frame components."""
+    """What holds at one end at all times; ``position``: its u. ``load``: in moving-frame components.
+
+    Of joined ends, the left has the twist that both share, the right the stress.
+    """
 
     side: str
     kind: str
@@ -49,17 +54,21 @@ class EndConditions:
 class FieldEquations:
     """Everything that governs one rod. Vectors are components in the moving frame, in the order of the group.
 
-    ``turn``, ``twist``: the fields E and V. ``stress``, ``wrench``: the fields S and j, only those not zero.
-    ``orientation``: the fields through which the world is seen, none if nothing in the scene sees it.
+    ``turn``, ``twist``: E and V, all d components; a frozen one of E is its reference, the others are fields.
+    ``stress``, ``wrench``: the fields S and j, only those not zero. ``orientation``, ``position``: the fields
+    through which the world is seen, none if nothing in the scene sees it. ``multipliers``: those components of
+    the stress that no law gives, because they keep a frozen mode at its reference.
 
-    ``compatibility``: dE/dt = V' + ad_E V. ``balance``: S' + ad*_E S + j = 0. ``stress_law``: S(E).
-    ``wrench_law``: j = -Gamma V + effects. ``orientation_rates``, ``orientation_slopes``: in t and in u.
-    ``motion``: the balance solved for the friction, Gamma V = S(E)' + ad*_E S(E) + effects, which with
-    ``compatibility`` and ``orientation_rates`` is the closed system. Where the law has steps in u, ``motion``
-    keeps the stress, which is continuous there, and ``stress_law`` closes it. ``left``, ``right``: the ends.
+    ``compatibility``: dE/dt = V' + ad_E V, all d rows; that of a frozen mode is a constraint on V. ``balance``:
+    S' + ad*_E S + j = 0. ``stress_law``: S(E). ``wrench_law``: j = -Gamma (V - V_medium) + effects.
+    ``orientation_rates``, ``orientation_slopes``, ``position_rates``, ``position_slopes``: in t and in u.
+    ``motion``: the balance solved for the friction, Gamma V = S(E)' + ad*_E S(E) + Gamma V_medium + effects, which
+    with ``compatibility`` and the rates is the closed system; a row without friction has nothing on the left.
+    Where the law has steps in u, ``motion`` keeps the stress, which is continuous there, and ``stress_law`` closes
+    it. ``left``, ``right``: the ends.
 
     ``energy``: elastic energy per length at rest (force), None unless the stiffness is symmetric.
-    ``dissipation``: power lost to friction per length at rest (force / time).
+    ``dissipation``: power lost to friction against the medium per length at rest (force / time).
     """
 
     model: RodModel
@@ -67,13 +76,17 @@ class FieldEquations:
     twist: Vector
     stress: Vector
     wrench: Vector
-    orientation: Orientation
+    orientation: Carried
+    position: Carried
+    multipliers: Vector
     compatibility: Equations
     balance: Equations
     stress_law: Equations
     wrench_law: Equations
     orientation_rates: Equations
     orientation_slopes: Equations
+    position_rates: Equations
+    position_slopes: Equations
     motion: Equations
     left: EndConditions
     right: EndConditions
@@ -94,25 +107,72 @@ class FieldEquations:
             "stress": self.stress_law,
             "wrench": self.wrench_law,
             "orientation": self.orientation_rates + self.orientation_slopes,
+            "position": self.position_rates + self.position_slopes,
             "motion": self.motion,
             "left end": self.left.equations,
             "right end": self.right.equations,
         }
 
     @property
+    def reference(self) -> Vector:
+        """The turn at rest: dimensionless, then 1 / length."""
+        return tuple(to_sympy(e) for e in self.model.reference)
+
+    @property
+    def constraints(self) -> Equations:
+        """The rows of the compatibility condition that belong to frozen modes."""
+        return tuple(e for e, held in zip(self.compatibility, self.model.held, strict=True) if held)
+
+    @property
+    def rates(self) -> Equations:
+        """The rows of the compatibility condition that belong to free modes: dE/dt of each."""
+        return tuple(e for e, held in zip(self.compatibility, self.model.held, strict=True) if not held)
+
+    @property
+    def algebraic(self) -> tuple[str, ...]:
+        """The velocities without friction, whose row of the motion is a balance without any velocity."""
+        return tuple(v.func.__name__ for v, e in zip(self.twist, self.motion, strict=True) if e.left == 0)
+
+    @property
+    def keeps_stress(self) -> bool:
+        """Whether the motion keeps the stress as a field that has a law."""
+        return any(e.right.has(*(law.left for law in self.stress_law)) for e in self.motion if self.stress_law)
+
+    @property
+    def unknowns(self) -> Vector:
+        """The fields of the closed system: turn, twist, multipliers, kept stress, orientation, position."""
+        kept = tuple(e.left for e in self.stress_law) if self.keeps_stress else ()
+        turn = tuple(e for e in self.turn if is_field(e))
+        return (*turn, *self.twist, *self.multipliers, *kept, *self.orientation.fields, *self.position.fields)
+
+    @property
+    def closed(self) -> Equations:
+        """The closed system: as many equations as ``unknowns``."""
+        laws = self.stress_law if self.keeps_stress else ()
+        return self.compatibility + self.motion + laws + self.orientation_rates + self.position_rates
+
+    @property
     def terms(self) -> tuple[str, ...]:
-        """What the rod feels, in words: elasticity, friction, the kinds of effects, the loaded ends."""
-        loaded = (f"load on the {end.side} end" for end in (self.left, self.right) if any(end.load))
-        present = [("elasticity", bool(self.stress)), ("friction", self.dissipation != 0)]
-        effects = (type(effect).__name__.lower() for effect in self.model.effects)
-        return (*(name for name, there in present if there), *dict.fromkeys(effects), *loaded)
+        """What the rod feels, in words: elasticity, friction, the kinds of effects, the loaded and driven ends."""
+        present = [
+            ("elasticity", bool(self.stress_law)),
+            ("active reference", any("t" in symbols(e) for e in self.model.reference)),
+            ("friction", self.dissipation != 0),
+        ]
+        effects = (effect.kind for effect in self.model.effects)
+        ends = (self.left, self.right)
+        loaded = (f"load on the {end.side} end" for end in ends if any(end.load))
+        driven = (f"drive of the {end.side} end" for end in ends if end.kind == "driven")
+        return (*(name for name, there in present if there), *dict.fromkeys(effects), *loaded, *driven)
 
     @property
     def fields(self) -> tuple[str, ...]:
-        """Names of all fields that occur: turn, twist, stress, wrench, orientation."""
-        vectors = (self.turn, self.twist, self.stress, self.wrench, self.orientation.fields)
+        """Names of all fields that occur: turn, twist, stress, wrench, orientation, position."""
+        vectors = (
+            self.turn, self.twist, self.stress, self.wrench, self.orientation.fields, self.position.fields,
+        )  # fmt: skip
         present = field_names(self._sides())
-        return tuple(name for vector in vectors for f in vector if (name := f.func.__name__) in present)
+        return tuple(name for vector in vectors for f in vector if is_field(f) and (name := f.func.__name__) in present)
 
     @property
     def parameters(self) -> tuple[str, ...]:

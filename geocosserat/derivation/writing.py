@@ -26,6 +26,7 @@ MINUS, PRIME = "\N{MINUS SIGN}", "\N{PRIME}"
 _DOTS = {0: "", 1: "\N{COMBINING DOT ABOVE}", 2: "\N{COMBINING DIAERESIS}"}
 _LOW, _HIGH = (str.maketrans("0123456789", digits) for digits in ("₀₁₂₃₄₅₆₇₈₉", "⁰¹²³⁴⁵⁶⁷⁸⁹"))
 _PARTS = re.compile(r"([A-Za-z]+?)_?([0-9]*)([xyz]?)")
+_LIKE_A_RATE = re.compile(r"_[tu]+$")
 # products read like cross products, what turns first; single fields in the order of the group
 _IN_PRODUCTS = ("Pi", "Omega", "h", "v", "F", "M", "f", "m", "e", "theta")
 _ALONE = ("h", "v", "Pi", "Omega", "F", "M", "f", "m", "e", "theta")
@@ -71,12 +72,15 @@ class Script(ABC):
         if e.is_Rational:
             return self._rational(e)
         if isinstance(e, sp.Symbol):
-            name = f"{e.name}_par" if e.name in self.taken else e.name
+            # F_1 and F1 look alike, and x_t is the rate of x
+            name = f"{e.name}_par" if _LIKE_A_RATE.sub("", e.name).replace("_", "") in self.taken else e.name
             return self.name(name), ATOM
         if is_field(e):
             orders = {U: 0, T: 0, **dict(e.variable_count)} if isinstance(e, sp.Derivative) else {U: 0, T: 0}
             base = e.expr if isinstance(e, sp.Derivative) else e
-            return self.field(base.func.__name__, int(orders[U]), int(orders[T])), ATOM
+            written = self.field(base.func.__name__, int(orders[U]), int(orders[T]))
+            # a field at one place, as joined ends have it
+            return written + ("" if base.args[0] == U else f"({self.write(base.args[0])})"), ATOM
         if e.is_Mul or (e.is_Pow and _inverse(e)):
             return self._product(e)
         if e.is_Pow and e.exp == sp.Rational(1, 2):
@@ -281,16 +285,16 @@ def _inverse(e: sp.Expr) -> bool:
     return bool(e.is_Pow and e.exp.is_Rational and e.exp < 0)
 
 
-def _ranks(e: sp.Expr, order: tuple[str, ...]) -> list[tuple[int, str]]:
-    """Place in that order and index of each field that occurs, the first to be read first."""
+def _ranks(e: sp.Expr, order: tuple[str, ...]) -> list[tuple[int, str, str]]:
+    """Place in that order, letter and index of each field that occurs, the first to be read first."""
     parts = (_parts(f.func.__name__) for f in e.atoms(AppliedUndef))
-    return sorted((order.index(p.base) if p.base in order else len(order), p.index) for p in parts if p)
+    return sorted((order.index(p.base) if p.base in order else len(order), p.base, p.index) for p in parts if p)
 
 
-def _term_rank(e: sp.Expr) -> tuple[int, list[tuple[int, str]]]:
+def _term_rank(e: sp.Expr) -> tuple[int, list[tuple[int, str, str]]]:
     """Derivatives, products of fields, single fields, coordinates and parameters, numbers."""
-    if e.has(sp.Derivative):
-        return 0, _ranks(e, _ALONE)
+    if derivatives := e.atoms(sp.Derivative):
+        return 0, [rank for d in sorted(derivatives, key=str) for rank in _ranks(d, _ALONE)] + _ranks(e, _ALONE)
     names = _ranks(e, _IN_PRODUCTS)
     if len(names) > 1:
         return 1, names
@@ -303,7 +307,7 @@ def _ordered_terms(e: sp.Expr) -> list[sp.Expr]:
     return list(e.as_ordered_terms())
 
 
-def _rank(e: sp.Expr) -> tuple[int, list[tuple[int, str]], Any]:
+def _rank(e: sp.Expr) -> tuple[int, list[tuple[int, str, str]], Any]:
     """Coefficients before fields, derivatives last; fields in the order of the vector equations."""
     if not has_fields(e):
         return (-1 if e.is_number else 0 if e.is_Symbol else 1, [], e.sort_key())

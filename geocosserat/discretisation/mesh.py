@@ -19,11 +19,13 @@ ROUND_OFF = 16 * float(np.finfo(float).eps)
 class Mesh:
     """Element edges (n+1,), a length, increasing; and the polynomial degree p in each element.
 
-    Nodes (n p + 1,) are Gauss-Lobatto, shared between neighbours; points (n p,) are Gauss.
+    Nodes (n p + 1,) are Gauss-Lobatto, shared between neighbours; points (n p,) are Gauss. joined: the first node and
+    the last are one, which is listed twice.
     """
 
     edges: Array
     reference: ReferenceElement
+    joined: bool = False
 
     @property
     def degree(self) -> int:
@@ -67,6 +69,8 @@ class Mesh:
         total = np.zeros((n * p + 1, *local.shape[2:]))
         total[:-1] = scaled[:, :p].reshape(n * p, *local.shape[2:])
         total[p::p] += scaled[:, p]
+        if self.joined:
+            total[0] = total[-1] = total[0] + total[-1]
         return total
 
     def local_nodes(self) -> Array:
@@ -80,7 +84,7 @@ class Mesh:
         return middle[:, None] + self.half[:, None] * x
 
 
-def make_mesh(length: float, elements: int, degree: int, steps: Iterable[float] = ()) -> Mesh:
+def make_mesh(length: float, elements: int, degree: int, steps: Iterable[float] = (), joined: bool = False) -> Mesh:
     """A mesh of [0, length] with at least `elements` elements and an edge on every step inside.
 
     The pieces between steps are cut evenly, each into its share of the elements, rounded up.
@@ -91,4 +95,4 @@ def make_mesh(length: float, elements: int, degree: int, steps: Iterable[float] 
     shares = [max(1, ceil(elements * (b - a) / length - 1e-9)) for a, b in pairwise(breaks)]
     pieces = [np.linspace(a, b, n + 1)[:-1] for (a, b), n in zip(pairwise(breaks), shares, strict=True)]
     edges = np.concatenate([*pieces, [length]])
-    return Mesh(edges, reference_element(degree))
+    return Mesh(edges, reference_element(degree), joined)

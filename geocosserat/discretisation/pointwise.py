@@ -11,14 +11,16 @@ With U and W the slope and the value of the twist at a Gauss point (both (d,)), 
     tangent       T = dS/dE,  P = d(pull)/dE
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 import sympy as sp
 
 from geocosserat.algebra.groups import Group
+from geocosserat.derivation.convert import to_sympy
 from geocosserat.discretisation.structure import ONE, ZERO, Matrix, RodStructure
+from geocosserat.model.expressions import Expression, Number
 
 Named = Mapping[str, sp.Expr]
 
@@ -27,30 +29,41 @@ Named = Mapping[str, sp.Expr]
 class Pointwise:
     """Named expressions, component by component (1-based in the names).
 
-    stress: F1, ..., in terms of the turn and coefficients
-    pull: pull_i, in terms of the turn and the stress
-    strain_rate: rate_i, in terms of the turn, slope_i (of the twist) and value_i
-    velocity: v1, ... in terms of drive_i (force density that friction balances) and mobility
-    energy: energy, elastic energy density, in terms of the turn and the stress
-    advection: advection_i_j = d rate_i / d E_j at fixed twist, in terms of value_i
+    state: what the state holds at a point: the turn, of frozen modes the stress (their turn is the reference)
+    turn: turn_i, in terms of the state, of frozen modes the reference
+    stress: F1, ... of the modes that are free, in terms of the state and coefficients
+    pull: pull_i, in terms of the state and the stress
+    strain_rate: rate_i, in terms of the state, slope_i (of the twist) and value_i; for frozen modes what must vanish
+    velocity: v1, ... in terms of drive_i (force density that friction balances) and mobility; slip_i, relative to
+    the medium, and medium_i as a name, if the medium moves
+    energy: energy, elastic energy density, in terms of the state and the stress
+    activity: power density of the reference that moves, in terms of the stress; empty if it does not
+    advection: advection_i_j = d rate_i / d state_j at fixed twist, in terms of value_i
     bracket: ad_i_j, the matrix of ad_E
+    surroundings: wrench_i and medium_i (not the zeros), in terms of coefficients and what is seen
+    loads: load_i of the left and of the right end, likewise
     pose: position and angle, or position and quaternion, of a carried frame
     carry: rate_i of the pose, from the twist (components v1, ... in the moving frame)
-    spin: spin_i_j, the rotation (a vector in the moving frame) that a change of pose entry j makes
+    shift: shift_i_j, the small motion (rotation, then translation, in the moving frame) that a change of pose entry j
+    makes
     """
 
     group: Group
-    turn: tuple[sp.Symbol, ...]
+    state: tuple[sp.Symbol, ...]
+    turn: Named
     stress: Named
     pull: Named
     strain_rate: Named
     velocity: Named
     energy: Named
+    activity: Named
     advection: Named
     bracket: Named
+    surroundings: Named
+    loads: tuple[Named, Named]
     pose: tuple[sp.Symbol, ...]
     carry: Named
-    spin: Named
+    shift: Named
 
 
 def _symbols(stem: str, d: int) -> np.ndarray:
@@ -79,45 +92,84 @@ def _pose(group: Group) -> tuple[tuple[sp.Symbol, ...], Named, Named]:
         pose = sp.symbols("pose_x pose_y pose_angle")
         c, s = sp.cos(pose[2]), sp.sin(pose[2])
         rates = [c * twist[0] - s * twist[1], s * twist[0] + c * twist[1], twist[2]]
-        return pose, {f"rate_{i + 1}": e for i, e in enumerate(rates)}, {"spin_1_3": sp.Integer(1)}
+        shift = {"shift_1_3": sp.Integer(1), "shift_2_1": c, "shift_2_2": s, "shift_3_1": -s, "shift_3_2": c}
+        return pose, {f"rate_{i + 1}": e for i, e in enumerate(rates)}, shift
     pose = sp.symbols("pose_x pose_y pose_z pose_a pose_b pose_c pose_d")
     a, b, c, d = pose[3:]
     norm = a * a + b * b + c * c + d * d
     v, w = twist[:3], twist[3:]
     q = np.array([b, c, d], dtype=object)
-    # v turned by the quaternion: v + 2 q x (q x v + a v) / norm
-    inner = np.cross(q, v) + a * np.array(v, dtype=object)
-    moved = np.array(v, dtype=object) + 2 * np.cross(q, inner) / norm
-    turned = [-(q @ w) / 2, *((a * np.array(w, dtype=object) + np.cross(q, w)) / 2)]
+
+    def turned(vector: np.ndarray, sign: int) -> np.ndarray:
+        """The vector turned by the quaternion, or back: v + 2 q x (q x v + a v) / norm."""
+        return np.asarray(vector + 2 * np.cross(q, np.cross(q, vector) + sign * a * vector) / norm)
+
+    moved = turned(np.array(v, dtype=object), 1)
+    spun = [-(q @ w) / 2, *((a * np.array(w, dtype=object) + np.cross(q, w)) / 2)]
     # twice the vector part of conj(q) dq / norm
     columns = [[-b, a, d, -c], [-c, -d, a, b], [-d, c, -b, a]]
-    spin = {f"spin_{i + 1}_{j + 4}": 2 * e / norm for i, row in enumerate(columns) for j, e in enumerate(row)}
-    return pose, {f"rate_{i + 1}": e for i, e in enumerate([*moved, *turned])}, spin
+    shift = {f"shift_{i + 1}_{j + 4}": 2 * e / norm for i, row in enumerate(columns) for j, e in enumerate(row)}
+    for j, axis in enumerate(np.eye(3, dtype=int).astype(object)):
+        seen = turned(np.array([sp.Integer(x) for x in axis], dtype=object), -1)
+        shift |= {f"shift_{i + 4}_{j + 1}": e for i, e in enumerate(seen)}
+    return pose, {f"rate_{i + 1}": e for i, e in enumerate([*moved, *spun])}, shift
+
+
+def _formulas(stem: str, formulas: Iterable[Expression]) -> Named:
+    """Formulas of the structure as symbolic ones, the zeros left out; a dot in a name becomes an underscore."""
+    found = {}
+    for i, e in enumerate(formulas, start=1):
+        if e != Number(0.0):
+            exact = to_sympy(e)
+            found[f"{stem}_{i}"] = exact.xreplace({s: sp.Symbol(s.name.replace(".", "_")) for s in exact.free_symbols})
+    return found
 
 
 def pointwise(structure: RodStructure) -> Pointwise:
     """The pointwise expressions of a rod with this structure."""
-    group = structure.group
+    group, frozen = structure.group, structure.frozen
     d = group.dimension
-    turn = np.array([sp.Symbol(name) for name in group.strain], dtype=object)
+    state = [sp.Symbol(name) for name in structure.state_names]
+    rest = [_entry(name) for name in structure.reference]
+    turn = np.array([r if held else s for s, r, held in zip(state, rest, frozen, strict=True)], dtype=object)
     stress = np.array([sp.Symbol(name) for name in group.stress], dtype=object)
     slope, value, drive = _symbols("slope", d), _symbols("value", d), _symbols("drive", d)
-    strain = turn - np.array([_entry(name) for name in structure.reference], dtype=object)
+    strain = turn - np.array(rest, dtype=object)
     law = _matrix(structure.stiffness) @ strain
     ad = group.ad(turn)
-    pose, carry, spin = _pose(group)
+    rates = slope + ad @ value
+    moving = np.array([_entry(name) for name in structure.reference_rate], dtype=object)
+    # d(ad_E W)/dE = -ad_W, and frozen modes do not change
+    advection = -group.ad(value) * np.array([0 if held else 1 for held in frozen], dtype=object)
+    for i in (i for i, held in enumerate(frozen) if held):
+        rates[i] -= moving[i]
+        if structure.indeterminate:
+            slack = sp.Symbol(f"slack_{group.stress[i]}")
+            rates[i] -= slack * stress[i]
+            advection[i, i] -= slack
+    slip = _matrix(structure.mobility) @ drive
+    velocity = dict(zip(group.twist, slip, strict=True))
+    if structure.dragged:
+        medium = [sp.Integer(0) if e == Number(0.0) else sp.Symbol(f"medium_{i + 1}") for i, e in enumerate(structure.medium)]
+        velocity = {f"slip_{i + 1}": e for i, e in enumerate(slip)} | {
+            name: sp.Symbol(f"slip_{i + 1}") + medium[i] for i, name in enumerate(group.twist)
+        }
+    pose, carry, shift = _pose(group)
     return Pointwise(
         group=group,
-        turn=tuple(turn),
-        stress=dict(zip(group.stress, law, strict=True)),
+        state=tuple(state),
+        turn={f"turn_{i + 1}": e for i, e in enumerate(turn)},
+        stress={name: e for name, e, held in zip(group.stress, law, frozen, strict=True) if not held},
         pull={f"pull_{i + 1}": e for i, e in enumerate(-(group.coad(turn) @ stress))},
-        strain_rate={f"rate_{i + 1}": e for i, e in enumerate(slope + ad @ value)},
-        velocity=dict(zip(group.twist, _matrix(structure.mobility) @ drive, strict=True)),
+        strain_rate={f"rate_{i + 1}": e for i, e in enumerate(rates)},
+        velocity=velocity,
         energy={"energy": sp.Rational(1, 2) * (strain @ stress)},
-        # d(ad_E W)/dE = -ad_W
-        advection=_named("advection", -group.ad(value)),
+        activity={"activity": -(moving @ stress)} if structure.active else {},
+        advection=_named("advection", advection),
         bracket=_named("ad", ad),
+        surroundings={**_formulas("wrench", structure.wrench), **_formulas("medium", structure.medium)},
+        loads=(_formulas("load", structure.left.load or ()), _formulas("load", structure.right.load or ())),
         pose=pose,
         carry=carry,
-        spin=spin,
+        shift=shift,
     )

@@ -16,7 +16,7 @@ from geocosserat.kernel.contract import Array, Callbacks
 DECLARATIONS = """
 typedef struct rod {
     int elements;
-    const double *half, *scale, *mass, *share, *u, *tables, *uniform, *point, *node, *base;
+    const double *half, *scale, *mass, *share, *u, *u_point, *tables, *uniform, *point, *node, *base;
     double *work;
 } rod;
 size_t rod_work(int elements);
@@ -65,6 +65,7 @@ class NativeRod:
         self._lib: Any = ffi.dlopen(str(library))
         self._double, self._int = ffi.typeof("double[]"), ffi.typeof("int[]")
         self.size = len(rod.state)
+        self.algebraic = rod.algebraic
         self._elements = rod.mesh.elements
         self._d, self._points = rod.structure.group.dimension, rod.mesh.elements * rod.mesh.degree
         arrays = {
@@ -73,6 +74,7 @@ class NativeRod:
             "mass": rod.mesh.mass,
             "share": 1 / rod.mesh.mass,
             "u": rod.mesh.u,
+            "u_point": rod.mesh.u_point,
             "tables": rod.tables,
             "uniform": rod.uniform,
             "point": rod.point,
@@ -121,7 +123,7 @@ class NativeRod:
             "scratch": scratch,
             "factors": np.empty(0 if dense else self._elements * self._lib.rod_factors()),
             "solving": np.empty(self._elements * b),
-            "dense": np.empty(self.size * (self.size + 6) if dense else 0),
+            "dense": np.empty(self.size * (self.size + 12) if dense else self.size),
         }
         pivots = np.empty(self._elements * b, dtype=np.intc)
         for name, array in arrays.items():
@@ -157,7 +159,7 @@ class NativeRod:
 
     def jacobian(self, t: float, y: Array) -> Array:
         space = [self._at(a) for a in self._space()]
-        J = np.empty(self.size * (self.size + 6))  # room behind the matrix for the eliminated orientations
+        J = np.empty(self.size * (self.size + 12))  # room behind the matrix for the eliminated orientations
         self._lib.rod_dense(self._rod, t, self._at(y), self._at(J), *space)
         return J[: self.size**2].reshape(self.size, self.size)
 

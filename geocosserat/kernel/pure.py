@@ -20,6 +20,7 @@ class NumpyRod:
             mesh.half,
             mesh.mass,
             mesh.u,
+            mesh.u_point,
             rod.tables,
             rod.uniform,
             rod.point,
@@ -27,6 +28,7 @@ class NumpyRod:
             rod.base,
         )
         self.size = len(rod.state)
+        self.algebraic = rod.algebraic
         self._blocks: tuple[Array, Array, Array] | None = None
         self._factors: Any = None
 

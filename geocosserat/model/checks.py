@@ -55,6 +55,12 @@ def check_all_finite(place: Place, vector: Sequence[Expression], names: Names, u
         check_finite(place.at(i), e, names, until)
 
 
+def check_written(place: Place, value: Any, vector: Sequence[Expression], names: Names, until: float) -> None:
+    """``check_finite`` of every component, each where it is written: in a list, or by itself."""
+    for i, e in enumerate(vector):
+        check_finite(place.at(i) if isinstance(value, list) else place, e, names, until)
+
+
 def check_positive(
     place: Place, matrix: Sequence[Sequence[Expression]], names: Names, components: Sequence[str], hint: str
 ) -> None:

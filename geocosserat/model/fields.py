@@ -65,9 +65,7 @@ class Table:
 def word(place: Place, value: Any, known: Sequence[str]) -> str:
     """One of the known words."""
     if not isinstance(value, str):
-        raise place.wrong(
-            one_of(known), NOTHING if value is None else value, "write one of the words in quotes"
-        )
+        raise place.wrong(one_of(known), NOTHING if value is None else value, "write one of the words in quotes")
     if value not in known:
         raise place.unknown(value, known, "word")
     return value
@@ -108,9 +106,7 @@ def expression(place: Place, value: Any, names: Names, variables: frozenset[str]
     """
     what = f"a number or an expression of {_MEANING[variables]}"
     if isinstance(value, bool) or not isinstance(value, int | float | str):
-        raise place.wrong(
-            what, NOTHING if value is None else value, "write a number, or an expression in quotes"
-        )
+        raise place.wrong(what, NOTHING if value is None else value, "write a number, or an expression in quotes")
     if isinstance(value, float) and not math.isfinite(value):
         raise place.wrong("a finite number", value)
     try:
@@ -122,9 +118,7 @@ def expression(place: Place, value: Any, names: Names, variables: frozenset[str]
         raise place.wrong(what, value, str(error)) from None
     for variable in _VARIABLES:
         if variable in used and {"s": "u"}.get(variable, variable) not in variables:
-            raise place.wrong(
-                what, Found(f"{shown(value)}, which depends on {variable}"), f"remove {variable}"
-            )
+            raise place.wrong(what, Found(f"{shown(value)}, which depends on {variable}"), f"remove {variable}")
     if not used & set(_VARIABLES) and not math.isfinite(result := float(evaluate(e, names.parameters))):
         raise place.wrong("a finite number", _result(value, result))
     return e
@@ -136,6 +130,18 @@ def vector(
     """A list of expressions, one for each component."""
     _check_length(place, value, components)
     return tuple(expression(place.at(i), entry, names, variables) for i, entry in enumerate(value))
+
+
+def moment(
+    place: Place, value: Any, names: Names, variables: frozenset[str], components: Sequence[str]
+) -> tuple[Expression, ...]:
+    """A vector with a component for each rotation; of the plane it has one, and is written without brackets."""
+    if len(components) > 1:
+        return vector(place, value, names, variables, components)
+    if isinstance(value, list):
+        what = "one number or expression (the plane has one rotation)"
+        raise place.wrong(what, value, "write it without brackets")
+    return (expression(place, value, names, variables),)
 
 
 def numbers(place: Place, value: Any, names: Names, components: Sequence[str]) -> tuple[float, ...]:

@@ -23,9 +23,7 @@ def read_parameters(place: Place, values: Any) -> dict[str, float]:
     if not isinstance(values, dict):
         raise place.wrong("a table of numbers", values, "write [parameters] above lines such as kappa = 1e4")
     if len(values) > MAX_PARAMETERS:
-        raise place.wrong(
-            f"at most {MAX_PARAMETERS} parameters", Found(str(len(values))), "write numbers in place"
-        )
+        raise place.wrong(f"at most {MAX_PARAMETERS} parameters", Found(str(len(values))), "write numbers in place")
     for name in values:
         _check_name(place, name)
     definitions = {name: _definition(place.at(name), value, values) for name, value in values.items()}
@@ -35,27 +33,19 @@ def read_parameters(place: Place, values: Any) -> dict[str, float]:
         for name in order.static_order():
             found[name] = float(evaluate(definitions[name], found))
             if not math.isfinite(found[name]):
-                raise place.at(name).wrong(
-                    "a finite number", Found(f"{shown(values[name])} = {found[name]!r}")
-                )
+                raise place.at(name).wrong("a finite number", Found(f"{shown(values[name])} = {found[name]!r}"))
     except CycleError as error:
         circle = list(reversed(error.args[1]))
         chain = " -> ".join(circle if len(circle) <= 6 else [*circle[:5], "..."])
-        raise place.at(circle[0]).wrong(
-            "a value that does not depend on itself", Found(chain), "break it"
-        ) from None
+        raise place.at(circle[0]).wrong("a value that does not depend on itself", Found(chain), "break it") from None
     return {name: found[name] for name in values}
 
 
 def _check_name(place: Place, name: str) -> None:
     if name in RESERVED:
-        raise place.at(name).wrong(
-            "a name of your own", Found(f"{name}, which every expression knows"), "rename it"
-        )
+        raise place.at(name).wrong("a name of your own", Found(f"{name}, which every expression knows"), "rename it")
     if not _NAME.fullmatch(name):
-        raise place.at(name).wrong(
-            "a name", name, "use at most 64 of the characters a-z A-Z 0-9 _, no digit first"
-        )
+        raise place.at(name).wrong("a name", name, "use at most 64 of the characters a-z A-Z 0-9 _, no digit first")
 
 
 def _definition(place: Place, value: Any, values: dict[str, Any]) -> Any:

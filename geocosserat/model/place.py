@@ -37,12 +37,8 @@ class Place:
         """The error for an unknown key of this table, or an unknown word in this place."""
         names = tuple(known)
         like = nearest(name, names)
-        hint = (
-            f"did you mean {like}?" if like else "remove it" if what == "key" else f"write one of the {what}s"
-        )
-        place, found = (
-            (self.at(name), Found("an unknown key")) if what == "key" else (self, Found(shown(name)))
-        )
+        hint = f"did you mean {like}?" if like else "remove it" if what == "key" else f"write one of the {what}s"
+        place, found = (self.at(name), Found("an unknown key")) if what == "key" else (self, Found(shown(name)))
         return place.wrong(one_of(names), found, hint)
 
 

@@ -77,9 +77,7 @@ def shown_path(path: str) -> str:
 
 def _tables(file: str, text: str) -> dict[str, Any]:
     if len(text) > MAX_BYTES or len(text.encode("utf-8", "replace")) > MAX_BYTES:
-        raise InputError(
-            "at most 1 MB", "more", "a scene is a short text; is this the right file?", file=file
-        )
+        raise InputError("at most 1 MB", "more", "a scene is a short text; is this the right file?", file=file)
     for number, line in enumerate(text.split("\n"), start=1):
         if len(line) > MAX_LINE:
             raise InputError(
@@ -89,9 +87,7 @@ def _tables(file: str, text: str) -> dict[str, Any]:
     try:
         tables = tomllib.loads(text)
     except RecursionError:
-        raise InputError(
-            f"at most {MAX_LEVELS} levels of nesting", "more", "write it flatter", file=file
-        ) from None
+        raise InputError(f"at most {MAX_LEVELS} levels of nesting", "more", "write it flatter", file=file) from None
     except ValueError as error:  # TOMLDecodeError, and integers of thousands of digits
         raise InputError("valid TOML", str(error), "correct that line", file=file) from None
     values = _plain(Place(file), tables, 0)

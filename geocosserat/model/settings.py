@@ -6,7 +6,7 @@ import tomllib
 from collections.abc import Iterable
 from typing import Any
 
-from geocosserat.model.effects.effect import kind, kinds
+from geocosserat.model.effects.catalogue import kind, kinds
 from geocosserat.model.parser import nearest
 from geocosserat.model.place import Found, Place, shown
 from geocosserat.model.schema import scene_paths
@@ -89,11 +89,7 @@ def _unknown(key: str, names: list[str], known: tuple[str, ...], file: str) -> E
     elif like:
         hint = f"did you mean {like}?"
     else:
-        hint = (
-            "set "
-            + (f"a parameter ({', '.join(names[:9])}) or " if names else "")
-            + "a path such as rod.length"
-        )
+        hint = "set " + (f"a parameter ({', '.join(names[:9])}) or " if names else "") + "a path such as rod.length"
     place = Place(file, key if len(key) <= 60 and key.isprintable() else shown(key))
     return place.wrong("a parameter of the scene or a path in it", Found("neither"), hint)
 

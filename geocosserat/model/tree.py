@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import math
+import operator
+from collections.abc import Callable
 from dataclasses import dataclass
+from numbers import Real
 from typing import Literal, TypeAlias
 
 FUNCTIONS = ("sin", "cos", "tan", "exp", "log", "sqrt", "tanh", "sinh", "cosh", "abs", "heaviside")
@@ -24,56 +27,50 @@ class ExpressionError(ValueError):
 
 
 class Arithmetic:
-    """+ - * / and unary minus of expressions, and of expressions with numbers. What is literally zero or one leaves no
-    trace, so that an expression made by a formula has only the terms that are there."""
+    """+ - * / ** of expressions, and of expressions with numbers.
+
+    What is literally zero or one leaves no trace, and numbers are computed, so that an expression made by a formula
+    has only the terms that are there. A result that is no finite number stays as it is written.
+    """
 
     __slots__ = ()
+    __array_ufunc__ = None  # numpy's numbers leave the operation to these methods
 
     def __add__(self, other: Expression | float) -> Expression:
-        a, b = _expression(self), _expression(other)
-        if isinstance(a, Number) and isinstance(b, Number):
-            return Number(a.value + b.value)
-        return b if a == _ZERO else a if b == _ZERO else Binary("+", a, b)
+        return _joined("+", self, other)
 
     def __radd__(self, other: float) -> Expression:
-        return _expression(other) + _expression(self)
+        return _joined("+", other, self)
 
     def __sub__(self, other: Expression | float) -> Expression:
-        a, b = _expression(self), _expression(other)
-        if isinstance(a, Number) and isinstance(b, Number):
-            return Number(a.value - b.value)
-        return -b if a == _ZERO else a if b == _ZERO else Binary("-", a, b)
+        return _joined("-", self, other)
 
     def __rsub__(self, other: float) -> Expression:
-        return _expression(other) - _expression(self)
+        return _joined("-", other, self)
 
     def __mul__(self, other: Expression | float) -> Expression:
-        a, b = _expression(self), _expression(other)
-        if _ZERO in (a, b):
-            return _ZERO
-        if isinstance(a, Number) and isinstance(b, Number):
-            return Number(a.value * b.value)
-        return b if a == _ONE else a if b == _ONE else Binary("*", a, b)
+        return _joined("*", self, other)
 
     def __rmul__(self, other: float) -> Expression:
-        return _expression(other) * _expression(self)
+        return _joined("*", other, self)
 
     def __truediv__(self, other: Expression | float) -> Expression:
-        a, b = _expression(self), _expression(other)
-        return a if a == _ZERO or b == _ONE else Binary("/", a, b)
+        return _joined("/", self, other)
 
     def __rtruediv__(self, other: float) -> Expression:
-        return _expression(other) / _expression(self)
+        return _joined("/", other, self)
 
     def __pow__(self, other: Expression | float) -> Expression:
-        power = _expression(other)
-        return _expression(self) if power == _ONE else Binary("**", _expression(self), power)
+        return _joined("**", self, other)
+
+    def __rpow__(self, other: float) -> Expression:
+        return _joined("**", other, self)
 
     def __neg__(self) -> Expression:
-        e = _expression(self)
+        e = as_expression(self)
         match e:
             case Number(value):
-                return _ZERO if value == 0 else Number(-value)
+                return as_expression(-value)
             case Negate(operand):
                 return operand
             case _:
@@ -127,12 +124,47 @@ Expression: TypeAlias = Number | Symbol | Call | Binary | Negate
 
 
 _ZERO, _ONE = Number(0.0), Number(1.0)
+_OF_NUMBERS: dict[Operator, Callable[[float, float], float]] = {
+    "+": operator.add, "-": operator.sub, "*": operator.mul, "/": operator.truediv, "**": math.pow,
+}  # fmt: skip
 
 
-def _expression(value: object) -> Expression:
-    """A number as an expression. TypeError for anything else that is none."""
+def as_expression(value: object) -> Expression:
+    """A number as an expression, -0.0 as zero. TypeError for anything else that is none."""
     if isinstance(value, Number | Symbol | Call | Binary | Negate):
-        return _ZERO if value == _ZERO else value  # -0.0 is zero too
-    if isinstance(value, int | float) and not isinstance(value, bool):
-        return Number(float(value))
+        return _ZERO if value == _ZERO else value
+    if isinstance(value, Real) and not isinstance(value, bool):
+        return as_expression(Number(float(value)))
     raise TypeError(f"expected an expression or a number, found {type(value).__name__}")
+
+
+def _joined(mark: Operator, left: object, right: object) -> Expression:
+    a, b = as_expression(left), as_expression(right)
+    if isinstance(a, Number) and isinstance(b, Number):
+        return _computed(mark, a, b)
+    match mark:
+        case "+" if a == _ZERO:
+            return b
+        case "-" if a == _ZERO:
+            return -b
+        case "+" | "-" if b == _ZERO:
+            return a
+        case "*" if _ZERO in (a, b):
+            return _ZERO
+        case "*" if a == _ONE:
+            return b
+        case "*" | "/" | "**" if b == _ONE:
+            return a
+        case "/" if a == _ZERO:
+            return _ZERO
+        case "**" if b == _ZERO or a == _ONE:
+            return _ONE
+    return Binary(mark, a, b)
+
+
+def _computed(mark: Operator, a: Number, b: Number) -> Expression:
+    try:
+        value = _OF_NUMBERS[mark](a.value, b.value)
+    except (ArithmeticError, ValueError):
+        value = math.nan
+    return as_expression(value) if math.isfinite(value) else Binary(mark, a, b)

@@ -9,7 +9,7 @@ import pytest
 
 from geocosserat.codegen.catalogue import catalogue, files, write
 from geocosserat.codegen.identity import identity
-from geocosserat.discretisation.structure import structure_of
+from geocosserat.discretisation.structuring import structure_of
 from geocosserat.kernel.library import find
 from geocosserat.model.scene import load_scene
 from geocosserat.shipped import shipped

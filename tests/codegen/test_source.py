@@ -17,7 +17,7 @@ from jinja2 import Environment, UndefinedError, meta
 from geocosserat.codegen.catalogue import catalogue
 from geocosserat.codegen.identity import identity
 from geocosserat.codegen.source import KernelSource, environment, generate
-from geocosserat.discretisation.structure import structure_of
+from geocosserat.discretisation.structuring import structure_of
 from geocosserat.kernel.compile import FLAGS
 from geocosserat.model.scene import load_scene
 from geocosserat.shipped import shipped

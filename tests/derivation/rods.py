@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 
 from geocosserat.algebra.groups import SE2, SE3, Group
 from geocosserat.derivation.notation import T, U, is_field
+from geocosserat.model.effects.weight import Weight
 from geocosserat.model.expressions import Expression, parse
-from geocosserat.model.records import End, RodModel, Weight
+from geocosserat.model.records import End, RodModel
 
 Array = NDArray[Any]
 NAMES = frozenset({"u", "t", "kappa", "g", "a", "b", "F1", "epsilon"})
@@ -145,7 +146,8 @@ def jets(expressions: Iterable[sp.Expr]) -> set[sp.Expr]:
     for e in expressions:
         derivatives = e.atoms(sp.Derivative)
         found |= derivatives
-        bare = e.xreplace(dict.fromkeys(derivatives, sp.Dummy()))
+        # each its own: terms with one and the same could cancel
+        bare = e.xreplace({d: sp.Dummy() for d in derivatives})
         found |= {f for f in bare.atoms(sp.Function) if is_field(f)}
     return found
 

@@ -12,8 +12,9 @@ from geocosserat.algebra.groups import SE2, SE3
 from geocosserat.derivation.convert import to_sympy
 from geocosserat.derivation.equations import derive
 from geocosserat.derivation.notation import T, U, field, field_names, is_field
+from geocosserat.model.effects.weight import Weight
 from geocosserat.model.expressions import evaluate
-from geocosserat.model.records import End, RodModel, Weight
+from geocosserat.model.records import End, RodModel
 from tests.derivation.rods import (
     HEAVY_PLANAR,
     HEAVY_SPATIAL,
@@ -356,13 +357,14 @@ def test_an_asymmetric_stiffness_has_no_energy() -> None:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"frozen": ("h1",)}, r"frozen: expected no frozen modes, found h1.*remove"),
-        ({"left": End("pinned")}, r'left end: expected "clamped" without a load or "free", found pinned'),
-        ({"right": End("clamped", force=vector(1, 0))}, r"right end: expected.*choose"),
-        ({"effects": (object(),)}, r"effects: expected weight, found object.*remove"),
+        ({"left": End("glued")}, r"left end: expected one of clamped, free, pinned, driven, found glued; choose"),
+        ({"right": End("clamped", force=vector(1, 0))}, r"right end: expected no load on a clamped end.*remove"),
+        ({"right": End("pinned", force=vector(1, 0))}, r"right end: expected no force on a pinned end.*remove"),
+        ({"left": End("driven")}, r"left end: expected a twist if it is driven and only then, found driven"),
+        ({"left": End("free", twist=vector(0, 0, 1))}, r"left end: expected a twist if it is driven and only then"),
     ],
 )
-def test_what_is_not_available_is_refused(change: dict[str, object], message: str) -> None:
+def test_ends_that_there_are_not_are_refused(change: dict[str, object], message: str) -> None:
     """Nothing in a model is silently left out."""
     with pytest.raises(ValueError, match=message):
         derive(dataclasses.replace(PLAIN_PLANAR, **change))

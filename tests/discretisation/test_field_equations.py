@@ -7,7 +7,7 @@ import sympy as sp
 
 from geocosserat.derivation.equations import derive
 from geocosserat.discretisation.pointwise import pointwise
-from geocosserat.discretisation.structure import structure_of
+from geocosserat.discretisation.structuring import structure_of
 from geocosserat.model.expressions import evaluate
 from geocosserat.model.scene import load_scene
 

@@ -10,7 +10,7 @@ import sympy as sp
 from numpy.typing import NDArray
 
 from geocosserat.discretisation.pointwise import Pointwise, pointwise
-from geocosserat.discretisation.structure import structure_of
+from geocosserat.discretisation.structuring import structure_of
 from tests.discretisation.rods import MOTIONS, NAMES, scene
 
 Symbols = NDArray[np.object_]

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from geocosserat.codegen.identity import identity
-from geocosserat.discretisation.structure import RodStructure, structure_of
+from geocosserat.discretisation.structure import RodStructure
+from geocosserat.discretisation.structuring import structure_of
 from geocosserat.model.expressions import Number, symbols
 from geocosserat.model.scene import load_scene
 from tests.discretisation.rods import CAST, CLAMPED, FREE, NAMES, WORLD, changed, load, scene, weight

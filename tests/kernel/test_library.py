@@ -14,7 +14,7 @@ import pytest
 from geocosserat.codegen.identity import identity
 from geocosserat.codegen.source import generate
 from geocosserat.conductor import kernel_text
-from geocosserat.discretisation.structure import structure_of
+from geocosserat.discretisation.structuring import structure_of
 from geocosserat.kernel.library import find, store
 from tests.discretisation.rods import changed, load, scene
 
@@ -106,7 +106,7 @@ def test_shipped_kernels_need_no_cache(monkeypatch: pytest.MonkeyPatch) -> None:
 WARM = """
 import sys
 from geocosserat.codegen.identity import identity
-from geocosserat.discretisation.structure import structure_of
+from geocosserat.discretisation.structuring import structure_of
 from geocosserat.kernel.library import find
 from geocosserat.model.scene import load_scene
 found = find(identity(structure_of(load_scene(sys.argv[1]).model)))

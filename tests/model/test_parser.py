@@ -215,9 +215,7 @@ def test_only_numbers_and_text_are_expressions(value: object, wording: str) -> N
         parse(value, NAMES)  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize(
-    ("value", "number"), [(3, 3.0), (-2.5, -2.5), ("-2.5", -2.5), ("1e4", 1e4), (" .5 ", 0.5)]
-)
+@pytest.mark.parametrize(("value", "number"), [(3, 3.0), (-2.5, -2.5), ("-2.5", -2.5), ("1e4", 1e4), (" .5 ", 0.5)])
 def test_a_number_is_a_number_however_it_is_written(value: str | float, number: float) -> None:
     """A number and its text give the same node, sign included."""
     assert parse(value, ()) == Number(number)

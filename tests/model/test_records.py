@@ -35,10 +35,7 @@ def test_a_full_matrix_prints_by_rows() -> None:
     """Couplings are seen at their place."""
     rows = [[3, 0, 0], [0, 2, "u/9"], [0, "u/9", 1]]
     printed = str(load_scene(changed(PLANAR, "rod.stiffness", rows)).model)
-    assert (
-        "stiffness  rows and columns h1, h2, Pi\n    h1       (3, 0, 0)\n    h2       (0, 2, u/9)\n"
-        in printed
-    )
+    assert "stiffness  rows and columns h1, h2, Pi\n    h1       (3, 0, 0)\n    h2       (0, 2, u/9)\n" in printed
 
 
 @pytest.mark.parametrize("scene", [PLANAR, SPATIAL])

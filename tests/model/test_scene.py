@@ -191,9 +191,7 @@ def test_no_number_may_be_infinite_or_nan(path: str, value: Any) -> None:
 def test_no_number_may_be_anything_else(path: str, value: Any) -> None:
     """Booleans, lists, tables and dates are not numbers; the message names the place."""
     scene = changed(changed(PLANAR, "start.position", [0, 0]), path, value)
-    with pytest.raises(
-        InputError, match=rf"^scene: {path.replace('.', '[.]')}.*: expected .*, found "
-    ) as caught:
+    with pytest.raises(InputError, match=rf"^scene: {path.replace('.', '[.]')}.*: expected .*, found ") as caught:
         load_scene(scene)
     assert "\n" not in str(caught.value)
 

@@ -64,9 +64,7 @@ def test_every_path_of_the_format_can_be_set(path: str) -> None:
 
 def test_the_last_setting_wins_and_settings_see_each_other() -> None:
     """Settings apply in their order."""
-    scene = load_scene(
-        PLANAR, ["load=1", "effects=[{kind='weight', force=[0,0]}]", "effects.0.force.1=7", "load=3"]
-    )
+    scene = load_scene(PLANAR, ["load=1", "effects=[{kind='weight', force=[0,0]}]", "effects.0.force.1=7", "load=3"])
     assert scene.model.parameters["load"] == 3.0
     assert scene.model.effects[0].force == (Number(0.0), Number(7.0))
 

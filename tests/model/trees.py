@@ -59,9 +59,7 @@ def _join(inner: st.SearchStrategy[str]) -> st.SearchStrategy[str]:
     return st.one_of(
         st.tuples(inner, st.sampled_from(["+", "-", "*", "/", "**", " + ", " ** "]), inner).map("".join),
         st.tuples(st.sampled_from(["-", "+", "- "]), inner).map("".join),
-        st.tuples(st.sampled_from(["(", "( ", *(f"{name}(" for name in FUNCTIONS)]), inner, st.just(")")).map(
-            "".join
-        ),
+        st.tuples(st.sampled_from(["(", "( ", *(f"{name}(" for name in FUNCTIONS)]), inner, st.just(")")).map("".join),
     )
 
 

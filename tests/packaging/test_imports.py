@@ -16,6 +16,7 @@ STAGES = {
     # stage (a folder, or one module): the stages and modules it may import besides its own and BASE
     "algebra": (),
     "model": ("algebra",),
+    "effects": ("model",),  # the public face for effects of one's own
     "derivation": ("algebra", "model"),
     "discretisation": ("algebra", "model", "derivation"),
     "codegen": ("algebra", "model", "derivation", "discretisation"),

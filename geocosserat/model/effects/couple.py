@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from geocosserat.model.describe import vector_text
-from geocosserat.model.effects.effect import Effect, Key, nothing, register
-from geocosserat.model.seen import Seen, Vector
+from geocosserat.model.effects.effect import Effect, Key, Pair
+from geocosserat.model.effects.registry import register
+from geocosserat.model.seen import Seen, Vector, nothing
 
 
 @register
@@ -19,7 +20,7 @@ class Couple(Effect):
 
     torque: Vector
 
-    def wrench(self, seen: Seen) -> tuple[Vector, Vector]:
+    def wrench(self, seen: Seen) -> Pair:
         return nothing(seen.space), self.torque
 
     def __str__(self) -> str:

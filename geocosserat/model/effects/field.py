@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from geocosserat.model.describe import vector_text
-from geocosserat.model.effects.effect import Effect, Key, nothing, register
-from geocosserat.model.seen import Seen, Vector, cross, dot
-from geocosserat.model.tree import Expression
+from geocosserat.model.effects.effect import Effect, Key, Pair
+from geocosserat.model.effects.registry import register
+from geocosserat.model.expressions import Expression
+from geocosserat.model.seen import Seen, Vector, cross, dot, nothing
 
 
 @register
@@ -20,12 +21,11 @@ class Field(Effect):
 
     kind = "field"
     keys = {"moment": Key("body"), "field": Key("world", "t")}  # noqa: RUF012
-    needs = "direction"
 
     moment: Vector
     field: Vector
 
-    def wrench(self, seen: Seen) -> tuple[Vector, Vector]:
+    def wrench(self, seen: Seen) -> Pair:
         return nothing(seen.space), cross(self.moment, seen.to_body(self.field))
 
     def potential(self, seen: Seen) -> Expression:

@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from geocosserat.model.describe import vector_text
-from geocosserat.model.effects.effect import Effect, Key, register
+from geocosserat.model.effects.effect import Effect, Key, Pair
+from geocosserat.model.effects.registry import register
+from geocosserat.model.expressions import Expression
 from geocosserat.model.seen import Seen, Vector, dot
-from geocosserat.model.tree import Expression
 
 
 @register
@@ -21,12 +22,11 @@ class Flow(Effect):
 
     kind = "flow"
     keys = {"gradient": Key("matrix", "t"), "velocity": Key("world", "t")}  # noqa: RUF012
-    needs = "pose"
 
     gradient: Vector
     velocity: Vector
 
-    def medium(self, seen: Seen) -> tuple[Vector, Vector]:
+    def medium(self, seen: Seen) -> Pair:
         n = seen.space
         rows = [self.gradient[n * i : n * i + n] for i in range(n)]
         velocity = tuple(v + dot(row, seen.position) for v, row in zip(self.velocity, rows, strict=True))

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from geocosserat.model.describe import vector_text
-from geocosserat.model.effects.effect import Effect, Key, nothing, register, rotations
-from geocosserat.model.seen import Seen, Vector
+from geocosserat.model.effects.effect import Effect, Key, Pair
+from geocosserat.model.effects.registry import register
+from geocosserat.model.seen import Seen, Vector, nothing
 
 
 @register
@@ -19,8 +20,8 @@ class Follower(Effect):
 
     force: Vector
 
-    def wrench(self, seen: Seen) -> tuple[Vector, Vector]:
-        return self.force, nothing(rotations(seen.space))
+    def wrench(self, seen: Seen) -> Pair:
+        return self.force, nothing(seen.rotations)
 
     def __str__(self) -> str:
         return f"follower force {vector_text(self.force)} per length, turning with the rod"

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from geocosserat.model.describe import vector_text
-from geocosserat.model.effects.effect import Effect, Key, nothing, register, rotations
-from geocosserat.model.expressions import to_text
-from geocosserat.model.seen import Seen, Vector, dot
-from geocosserat.model.tree import Expression
+from geocosserat.model.effects.effect import Effect, Key, Pair
+from geocosserat.model.effects.registry import register
+from geocosserat.model.expressions import Expression, to_text
+from geocosserat.model.seen import Seen, Vector, dot, nothing
 
 
 @register
@@ -18,15 +18,14 @@ class Trap(Effect):
 
     kind = "trap"
     keys = {"stiffness": Key("scalar"), "centre": Key("world", "t")}  # noqa: RUF012
-    needs = "pose"
 
     stiffness: Vector
     centre: Vector
 
-    def wrench(self, seen: Seen) -> tuple[Vector, Vector]:
+    def wrench(self, seen: Seen) -> Pair:
         (stiffness,) = self.stiffness
         pull = tuple(stiffness * away for away in self._away(seen))
-        return seen.to_body(pull), nothing(rotations(seen.space))
+        return seen.to_body(pull), nothing(seen.rotations)
 
     def potential(self, seen: Seen) -> Expression:
         (stiffness,) = self.stiffness

@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from geocosserat.model.describe import vector_text
-from geocosserat.model.effects.effect import Effect, Key, nothing, register, rotations
-from geocosserat.model.seen import Seen, Vector, dot
-from geocosserat.model.tree import Expression
+from geocosserat.model.effects.effect import Effect, Key, Pair
+from geocosserat.model.effects.registry import register
+from geocosserat.model.expressions import Expression
+from geocosserat.model.seen import Seen, Vector, dot, nothing
 
 
 @register
@@ -17,12 +18,11 @@ class Weight(Effect):
 
     kind = "weight"
     keys = {"force": Key("world")}  # noqa: RUF012
-    needs = "direction"
 
     force: Vector
 
-    def wrench(self, seen: Seen) -> tuple[Vector, Vector]:
-        return seen.to_body(self.force), nothing(rotations(seen.space))
+    def wrench(self, seen: Seen) -> Pair:
+        return seen.to_body(self.force), nothing(seen.rotations)
 
     def potential(self, seen: Seen) -> Expression:
         return -dot(self.force, seen.position)

@@ -1,0 +1,209 @@
+"""From a model to the structure of its kernel: everything that varies gets a name and a place."""
+
+from collections.abc import Sequence
+
+from geocosserat.algebra.groups import Group
+from geocosserat.discretisation.structure import (
+    ONE,
+    ZERO,
+    Coefficient,
+    EndStructure,
+    Formulas,
+    Matrix,
+    Place,
+    RodStructure,
+    Row,
+)
+from geocosserat.model.effects.effect import Effect, together
+from geocosserat.model.expressions import (
+    Binary,
+    Call,
+    Expression,
+    Negate,
+    Number,
+    Symbol,
+    constant,
+    derivative,
+    symbols,
+)
+from geocosserat.model.records import End, RodModel
+from geocosserat.model.seen import seen
+
+FIRMNESS = ("free", "pinned", "driven", "clamped")
+"""Kinds of end, the later the better poses are marched from it."""
+
+
+class _Names:
+    """Names the coefficients of a model, in order, once each."""
+
+    def __init__(self) -> None:
+        self.found: dict[str, Coefficient] = {}
+        self.steps: dict[tuple[Expression, Place], str] = {}
+
+    def add(self, name: str, expression: Expression, varying: Place) -> str:
+        """The name to use for `expression`; a literal zero needs none."""
+        if constant(expression) == 0.0:
+            return ZERO
+        used = symbols(expression)
+        place: Place = varying if "u" in used else "uniform"
+        timed = "t" in used
+        written = self._inputs(expression, varying) if timed else expression
+        self.found[name] = Coefficient(name, place, written, timed)
+        return name
+
+    def formula(self, name: str, expression: Expression, varying: Place) -> Expression:
+        """The same as a symbol, or zero."""
+        named = self.add(name, expression, varying)
+        return Number(0.0) if named == ZERO else Symbol(named)
+
+    def _inputs(self, e: Expression, varying: Place) -> Expression:
+        """`e` in terms of t, u and coefficients: its parameters, and its steps along the rod (which are sampled from
+        both sides of a node, like all else)."""
+        match e:
+            case Symbol(parameter) if parameter not in ("t", "u"):
+                # a prefix keeps the user's names apart from those of the kernel
+                self.found[f"p_{parameter}"] = Coefficient(f"p_{parameter}", "uniform", e)
+                return Symbol(f"p_{parameter}")
+            case Call("heaviside", argument) if "u" in symbols(argument):
+                name = self.steps.setdefault((e, varying), f"step_{len(self.steps) + 1}")
+                self.found[name] = Coefficient(name, varying, e)
+                return Symbol(name)
+            case Call(function, argument):
+                return Call(function, self._inputs(argument, varying))
+            case Negate(operand):
+                return Negate(self._inputs(operand, varying))
+            case Binary(operator, left, right):
+                return Binary(operator, self._inputs(left, varying), self._inputs(right, varying))
+            case _:
+                return e
+
+    def stiffness(self, matrix: Sequence[Sequence[Expression]], frozen: Sequence[bool]) -> Matrix:
+        """Names of a symmetric matrix: both halves share a name; frozen modes have none."""
+        d = len(matrix)
+        names = [[ZERO] * d for _ in range(d)]
+        for i in range(d):
+            for j in range(i, d):
+                if not (frozen[i] or frozen[j]):
+                    names[i][j] = names[j][i] = self.add(f"k_{i + 1}_{j + 1}", matrix[i][j], "point")
+        return tuple(tuple(row) for row in names)
+
+    def entries(self, stem: str, pattern: Sequence[Sequence[bool]], places: Sequence[Place]) -> Matrix:
+        """Names of a symmetric matrix that is sampled as a whole, where the pattern has entries; a place each row."""
+        d = len(pattern)
+        names = [[ZERO] * d for _ in range(d)]
+        for i in range(d):
+            for j in range(i, d):
+                if pattern[i][j]:
+                    name = f"{stem}_{i + 1}_{j + 1}"
+                    self.found[name] = Coefficient(name, places[i])
+                    names[i][j] = names[j][i] = name
+        return tuple(tuple(row) for row in names)
+
+
+def _connected(matrix: Sequence[Sequence[Expression]]) -> list[int]:
+    """For each component the first one that it is coupled to, directly or not: the inverse couples the same ones."""
+    d = len(matrix)
+    block = list(range(d))
+    for i in range(d):
+        for j in range(d):
+            if constant(matrix[i][j]) != 0.0:
+                low, high = sorted((block[i], block[j]))
+                block = [low if b == high else b for b in block]
+    return block
+
+
+def _mobility(names: _Names, friction: Sequence[Sequence[Expression]]) -> Matrix:
+    """Names of the inverse of the friction."""
+    d, block = len(friction), _connected(friction)
+    varies = {
+        b: any("u" in symbols(friction[i][j]) for i in range(d) for j in range(d) if block[i] == block[j] == b)
+        for b in set(block)
+    }
+    places: list[Place] = ["node" if varies[b] else "uniform" for b in block]
+    return names.entries("mobility", [[a == b for b in block] for a in block], places)
+
+
+def _load(names: _Names, side: str, end: End, group: Group) -> Formulas | None:
+    if end.force is None and end.torque is None:
+        return None
+    nothing = (Number(0.0),)
+    parts = (*(end.force or nothing * group.translations), *(end.torque or nothing * group.rotations))
+    named = [
+        names.formula(f"{side}_{name}", part, "uniform") for name, part in zip(group.wrench, parts, strict=True)
+    ]
+    if end.frame == "world":
+        frame, force, torque = seen(group.space), named[: group.translations], named[group.translations :]
+        named = [*frame.to_body(force), *(frame.to_body(torque) if group.rotations > 1 else torque)]
+    return tuple(named)
+
+
+def _end(names: _Names, side: str, end: End, model: RodModel) -> EndStructure:
+    group = model.group
+    d, uniform = group.dimension, ["uniform"] * group.dimension
+    twist: Row | None = (ZERO,) * d if end.kind == "clamped" else None
+    mobility = friction = None
+    block = _connected(model.friction)
+    if end.kind == "driven" and end.twist is not None:
+        twist = tuple(
+            names.add(f"{side}_{name}", e, "uniform") for name, e in zip(group.twist, end.twist, strict=True)
+        )
+        friction = names.entries(f"{side}_friction", [[a == b for b in block] for a in block], uniform)  # type: ignore[arg-type]
+    if end.kind == "pinned":
+        turns = range(group.translations, d)
+        pattern = [[block[i] == block[j] and i in turns and j in turns for j in range(d)] for i in range(d)]
+        mobility = names.entries(f"{side}_mobility", pattern, uniform)  # type: ignore[arg-type]
+    return EndStructure(end.kind, twist, _load(names, side, end, group), mobility, friction)
+
+
+def _named_effects(names: _Names, effects: Sequence[Effect]) -> list[Effect]:
+    """The effects with every value replaced by the symbol of its coefficient."""
+    found: list[Effect] = []
+    for effect in effects:
+        same = sum(other.kind == effect.kind for other in found)
+        stem = effect.kind if same == 0 else f"{effect.kind}{same + 1}"
+
+        def name(key: str, i: int, e: Expression, stem: str = stem) -> Expression:
+            return names.formula(f"{stem}_{key}_{i + 1}", e, "node")
+
+        found.append(effect.renamed(name))
+    return found
+
+
+def structure_of(model: RodModel) -> RodStructure:
+    """The structure of the kernel that `model` calls for."""
+    group, names = model.group, _Names()
+    frozen = model.held
+    stiffness = names.stiffness(model.stiffness, frozen)
+    reference = tuple(
+        ONE if constant(e) == 1.0 else names.add(f"rest_{name}", e, "point")
+        for name, e in zip(group.strain, model.reference, strict=True)
+    )
+    reference_rate = tuple(
+        names.add(f"rate_{name}", derivative(e, "t"), "point")
+        for name, e in zip(group.strain, model.reference, strict=True)
+    )
+    mobility = _mobility(names, model.friction)
+    left, right = (_end(names, side, end, model) for side, end in (("left", model.left), ("right", model.right)))
+    held = model.joined or "free" not in (model.left.kind, model.right.kind)
+    for stress, frozen_mode in zip(group.stress, frozen, strict=True):
+        if held and frozen_mode:
+            names.found[f"slack_{stress}"] = Coefficient(f"slack_{stress}", "uniform")
+    frame = seen(group.space)
+    effects = _named_effects(names, model.effects)
+    base = "left" if FIRMNESS.index(model.left.kind) >= FIRMNESS.index(model.right.kind) else "right"
+    return RodStructure(
+        motion="planar" if group.translations == 2 else "spatial",
+        frozen=frozen,
+        stiffness=stiffness,
+        reference=reference,
+        reference_rate=reference_rate,
+        mobility=mobility,
+        left=left,
+        right=right,
+        joined=model.joined,
+        wrench=together(((*force, *moment) for force, moment in (e.wrench(frame) for e in effects)), group.dimension),
+        medium=together(((*flow, *spin) for flow, spin in (e.medium(frame) for e in effects)), group.dimension),
+        base="left" if base == "left" else "right",
+        moving_base=(left if base == "left" else right).kind != "clamped",
+        coefficients=tuple(names.found.values()),
+    )
