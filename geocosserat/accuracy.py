@@ -43,7 +43,8 @@ def sees_all(scene: Scene, setting: Setting, accuracy: float) -> bool:
     its square are compared with those on a thousand points; they must agree to the square root of the accuracy.
     """
     model = scene.model
-    coefficients = [*model.reference, *scene.start.strain, *(e for effect in model.effects for e in effect.force)]
+    coefficients = [*model.reference, *scene.start.strain]
+    coefficients += [e for effect in model.effects for values in effect.values().values() for e in values]
     coefficients += [e for row in (*model.stiffness, *model.friction) for e in row]
     varying = [e for e in coefficients if "u" in symbols(e)]
     steps = [x for e in varying for x in jump_positions(e, model.length, model.parameters)]

@@ -66,12 +66,15 @@ def tolerances(rod: SemiDiscrete, rtol: float, atol: float | None, energy: float
     """Absolute tolerance of each state entry, (size,): `atol` for strains, or rtol where none is given.
 
     Strains count by the displacement they make: stretches as they are, curvatures in units of 1 / length, and so
-    for the carried pose. The two energies count by the energy stored at the start, or that of bending by a radian.
+    for the carried pose; stresses of frozen modes by the energy. The two energies count by the energy stored at the start, or that of bending by a radian.
     """
     strain = rtol if atol is None else atol
     length, group = float(rod.mesh.edges[-1]), rod.structure.group
     points = rod.mesh.elements * rod.mesh.degree
-    turn = np.repeat([strain] * group.translations + [strain / length] * group.rotations, points)
+    turns = [strain] * group.translations + [strain / length] * group.rotations
+    stresses = [strain * energy / length] * group.translations + [strain * energy] * group.rotations
+    held = rod.structure.frozen
+    turn = np.repeat([s if frozen else e for e, s, frozen in zip(turns, stresses, held, strict=True)], points)
     carried = [strain * length] * group.translations + [strain] * (rod.structure.carried - group.translations)
     return np.concatenate([turn, carried[: rod.structure.carried], [strain * energy] * 2])
 
@@ -80,8 +83,13 @@ def _unit_of_energy(scene: Scene, rod: SemiDiscrete, kernel: NativeRod | NumpyRo
     """Energy stored at the start, or that of bending the softest way by a radian if that is more."""
     model, group = scene.model, scene.model.group
     middle = {**model.parameters, "u": model.length / 2}
-    soft = min(float(evaluate(model.stiffness[i][i], middle)) for i in range(group.translations, group.dimension))
-    return max(kernel.observe(0.0, rod.state)[2], soft / model.length)
+    free = [i for i in range(group.dimension) if not rod.structure.frozen[i]]
+    # bending by a radian, stretching by the length
+    units = [
+        float(evaluate(model.stiffness[i][i], middle)) * model.length ** (1 if i < group.translations else -1)
+        for i in ([i for i in free if i >= group.translations] or free)
+    ]
+    return max(kernel.observe(0.0, rod.state)[2], min(units))
 
 
 def chosen_setting(scene: Scene) -> Setting | None:
@@ -94,11 +102,14 @@ def chosen_setting(scene: Scene) -> Setting | None:
 
 
 def drift(rod: SemiDiscrete, trajectory: Trajectory) -> float:
-    """How far the right end moved that is held, though nothing but the march of poses says so; a length."""
-    if rod.structure.held != (True, True):
+    """How far an end strayed that is held in its place, though nothing but the march of poses says so; a length."""
+    structure = rod.structure
+    first, last = (rod.poses(trajectory.states[i], trajectory.times[i]).position for i in (0, -1))
+    if structure.joined:
+        return float(np.linalg.norm(last[-1] - last[0]))
+    if not {structure.left.kind, structure.right.kind} <= {"clamped", "pinned"}:
         return 0.0
-    first, last = (rod.poses(trajectory.states[i]).position[-1] for i in (0, -1))
-    return float(np.linalg.norm(last - first))
+    return float(np.linalg.norm((last - first)[[0, -1]], axis=1).max())
 
 
 def switches_of(scene: Scene) -> tuple[float, ...]:
@@ -107,7 +118,8 @@ def switches_of(scene: Scene) -> tuple[float, ...]:
     loads = [end.force or () for end in (model.left, model.right)] + [
         end.torque or () for end in (model.left, model.right)
     ]
-    loads += [effect.force for effect in model.effects]
+    loads += [end.twist or () for end in (model.left, model.right)]
+    loads += [vector for effect in model.effects for vector in effect.values().values()]
     return tuple(t for load in loads for e in load for t in switch_times(e, scene.run.until, model.parameters))
 
 
@@ -156,7 +168,7 @@ class Simulation:
             now = self._attempt(rung, setting, before[1] if before else np.empty((0, 0)))
             if not now.trajectory.reached:
                 return now, None
-            positions = now.rod.poses(now.trajectory.states[-1]).position
+            positions = now.rod.poses(now.trajectory.states[-1], now.trajectory.times[-1]).position
             if before is not None:
                 gap = position_gap(*before, now.rod.mesh, positions)
                 estimate = max(gap, drift(now.rod, now.trajectory)) / self.scene.model.length
@@ -200,7 +212,7 @@ def solution_of(scene: Scene, attempt: Attempt, estimate: float | None, clock: C
     """The result of an attempt as the record that is kept: fields over time, with their provenance."""
     rod, kernel, trajectory = attempt.rod, attempt.kernel, attempt.trajectory
     seen = [kernel.observe(float(t), y) for t, y in zip(trajectory.times, trajectory.states, strict=True)]
-    poses = rod.poses(trajectory.states)
+    poses = rod.poses(trajectory.states, trajectory.times)
     accuracy = scene.run.accuracy
     # refined as far as it goes, and no two rods agree
     missed = chosen_setting(scene) is None and (estimate is None or estimate > (accuracy or DEFAULT_ACCURACY))
@@ -216,7 +228,7 @@ def solution_of(scene: Scene, attempt: Attempt, estimate: float | None, clock: C
         rotation=poses.rotation,
         angle=poses.angle,
         twist=np.stack([twist.T for twist, _, _ in seen]),
-        turn=rod.turn(trajectory.states).swapaxes(-1, -2),
+        turn=rod.turn(trajectory.states, trajectory.times).swapaxes(-1, -2),
         stress=np.stack([stress.T for _, stress, _ in seen]),
         energy=np.array([energy for _, _, energy in seen]),
         dissipated=trajectory.states[:, -2],

@@ -72,7 +72,7 @@ def _tapes(p: Pointwise) -> dict[str, Tape]:
 def _seen_tangent(group: Group, named: Named) -> Tape:
     """Derivatives name_j of formulas: j counts the angle and the place in the plane; in space the rotation matrix by
     rows, then the place."""
-    found = {}
+    found: dict[str, sp.Expr] = {}
     for name, e in named.items():
         if group.rotations == 1:
             c, s = sp.symbols("frame_cos frame_sin")

@@ -57,8 +57,7 @@ def maps(chart: Chart) -> ChartMaps:
     determinant = reduction.reduced(_determinant(square))
     inverse = reduction.reciprocal(determinant)
     rates = [
-        [_cofactor(square, i, j) * inverse for i in range(chart.group.rotations)]
-        for j in range(len(chart.coordinates))
+        [_cofactor(square, i, j) * inverse for i in range(chart.group.rotations)] for j in range(len(chart.coordinates))
     ]
     return ChartMaps(rotation, turning, _written(rates, reduction), reduction.written(determinant))
 
@@ -105,9 +104,9 @@ class _Reduction:
         self._rings = [PolyRing(order, sp.QQ, lex) for order in orders]
         self._rules = [[ring.from_expr(e) for e in vanishing] for ring in self._rings]
         self._names = [[ring.from_expr(e) for e in chart.names] for ring in self._rings]
-        fixed = {e.left: e.right for e in chart.constraints}
+        fixed = {e.left: e.right for e in chart.constraints if self._size and e.left == self._size.right}
         self._gradients: dict[tuple[sp.Expr, sp.Expr], Poly] = {}
-        self._constants = {f: fixed[chart.size.right] for f in self._lengths if chart.size.right in fixed}
+        self._constants = {f: value for f in self._lengths for value in fixed.values()}
 
     def slope(self, p: Poly, q: sp.Expr) -> Poly:
         """The derivative by a coordinate, by the chain rule through the unknowns that depend on it."""

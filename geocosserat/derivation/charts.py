@@ -29,16 +29,16 @@ AXES: Final = "xyz"
 class Chart:
     """Coordinates of the rotations of a group, and the rotation matrix as a function of them.
 
-    ``words``: what the coordinates mean, for readers. ``coordinates``: fields, dimensionless (angles in
-    radians). ``rotation``: R, object array (space, space), of the coordinates, of ``size`` and of sines and
-    cosines of single fields. ``size``: if R contains the size of the coordinates, a power of its field
-    and the polynomial of the coordinates that this is. ``abbreviations``: fields that stand for functions of the coordinates, each
-    of those before it. ``constraints``: what the coordinates satisfy, if there are more than needed.
-    ``singular`` vanishes exactly where rates of the coordinates are unbounded or where the chart ends;
-    None if there is no such place. ``where``: that set in words.
+    ``words``: what the coordinates mean, for readers. ``coordinates``: fields, dimensionless (angles in radians).
+    ``rotation``: R, object array (space, space), of the coordinates, of ``size``, and of sines and cosines of single
+    fields. ``where``: the singular set in words. ``singular`` vanishes exactly there, where the rates of the
+    coordinates are unbounded or the chart ends; None if there is no such place. ``size``: if R contains the size of
+    the coordinates, a power of its field and the polynomial of the coordinates that this is. ``abbreviations``:
+    fields that stand for functions of the coordinates, each of those before it. ``constraints``: what the coordinates
+    satisfy, if there are more of them than rotations.
 
-    For the reduction to a readable form: ``unknowns``, what R and the maps are polynomials in, of which the
-    first in a relation is eliminated by it; ``names``, polynomials that vanish and bring in the abbreviations;
+    For the reduction to a readable form: ``unknowns``, what R and the maps are polynomials in, of which the first in
+    a relation is eliminated by it; ``names``, polynomials that vanish and bring in the abbreviations;
     ``reciprocals``, the unknowns that stand for one over an expression.
     """
 
@@ -259,4 +259,5 @@ def _cross(v: Vector) -> Array:
 def _about(axis: int, angle: sp.Expr) -> Array:
     """The rotation by an angle about a world axis: one plus sine times generator plus versine times its square."""
     generator = _cross(tuple(int(axis == k) for k in range(3)))
-    return _one() + sp.sin(angle) * generator + (1 - sp.cos(angle)) * (generator @ generator)
+    rotation: Array = _one() + sp.sin(angle) * generator + (1 - sp.cos(angle)) * (generator @ generator)
+    return rotation

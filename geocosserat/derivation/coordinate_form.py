@@ -14,9 +14,7 @@ from geocosserat.derivation.records import EndConditions, Equations, FieldEquati
 _MOST_INLINE: Final = 7
 _LETTER: Final = Formula("q", "q", "q")
 _SLOPES: Final = Formula("r' = R h, R' = R Π̂", "r_u = R h, R_u = R Pi^", r"r' = R h,\; R' = R \hat\Pi")
-_RATES: Final = Formula(
-    "ṙ = R v, Ṙ = R Ω̂", "r_t = R v, R_t = R Omega^", r"\dot r = R v,\; \dot R = R \hat\Omega"
-)
+_RATES: Final = Formula("ṙ = R v, Ṙ = R Ω̂", "r_t = R v, R_t = R Omega^", r"\dot r = R v,\; \dot R = R \hat\Omega")
 
 
 def coordinates(equations: FieldEquations, chart: str | None = None) -> Document:
@@ -29,9 +27,7 @@ def coordinates(equations: FieldEquations, chart: str | None = None) -> Document
     sections = [
         Section("Chart", system.frame, remark=system.chart.words),
         *_kept(system),
-        Section(
-            "Turn", system.turn, _SLOPES, remark="The twist V is the same function with rates in place of slopes."
-        ),
+        Section("Turn", system.turn, _SLOPES, remark="The twist V is the same function with rates in place of slopes."),
         *_frozen(system),
         *([replace(layout.stress(equations), remark="")] if system.stress_law else []),
         replace(layout.motion(equations), remark=_closure(system)),

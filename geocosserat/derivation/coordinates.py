@@ -23,17 +23,18 @@ from geocosserat.model.errors import InputError
 
 @dataclass(frozen=True)
 class CoordinateEquations:
-    """A rod in a chart, n coordinates: every part a tuple of equations, fields of (u, t) on the left.
+    """A rod in a chart of n coordinates, in a group of dimension d; fields of (u, t).
 
-    ``coordinates``: position (lengths), then rotation (dimensionless). ``frame``: the chart's abbreviations
-    (dimensionless) and the entries of R, functions of the coordinates. ``turn``: E (dimensionless, 1 / length)
-    of coordinates and slopes, d equations; ``twist``: V (length / time, 1 / time), the same of the rates.
-    ``rates``: the inverse, dq/dt of coordinates and V, n equations. ``stress_law`` and ``motion``: those of
-    the chart-free form. ``constraint``: what the coordinates satisfy; kept by the rates. ``frozen``: frozen
-    components of E, as functions of coordinates and slopes, at their reference; ``multipliers``: the stresses
-    that keep them there and have no law. ``left``, ``right``: the
-    ends, clamped without twist as no rate. ``alone``: in the plane, the motion with all else put in, world components of force / length
-    and the moment / length: three equations for x, y and theta; empty in space. ``singular``: see `Chart`.
+    ``coordinates``: of the position (lengths), then of the rotation (dimensionless). ``frame``: the chart's
+    abbreviations and the entries of R, functions of the coordinates (dimensionless). ``turn``: E of coordinates and
+    slopes (dimensionless, then 1 / length), without what is frozen; ``twist``: V, d components, the same function
+    of coordinates and rates (length / time, then 1 / time). ``rates``: its inverse, dq/dt of coordinates and V, n
+    equations. ``stress_law``, ``motion``: those of the chart-free form. ``constraint``: what the coordinates satisfy,
+    which the rates keep. ``frozen``: frozen components of E, as functions of coordinates and slopes, at their
+    reference; ``multipliers``: the stresses that keep them there and have no law. ``left``, ``right``: the ends; that
+    a clamped end has no twist is said by the rates of its coordinates. ``alone``: in the plane, the motion with turn
+    and twist put in, forces in the world (force / length, then force), for x, y and theta alone; empty in space.
+    ``singular``: where the chart fails, if it does.
     """
 
     equations: FieldEquations

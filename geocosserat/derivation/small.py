@@ -7,13 +7,11 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from geocosserat.derivation.distribute import distributed
+from geocosserat.derivation.distribute import distributed, terms
 from geocosserat.derivation.elimination import put_in
 from geocosserat.derivation.limit import LimitEquations, given
 from geocosserat.derivation.notation import T, has_fields
 from geocosserat.derivation.records import EndConditions, Equation, Equations
-
-_SIZE = sp.Dummy("size", real=True)
 
 
 @dataclass(frozen=True)
@@ -64,6 +62,18 @@ def _small_end(end: EndConditions, rest: Mapping[sp.Expr, sp.Expr], stretch: sp.
 
 
 def _first_order(e: sp.Expr, rest: Mapping[sp.Expr, sp.Expr]) -> sp.Expr:
-    """The derivative of e at rest in the direction of the fields' distance from rest."""
-    moved = {f: value + _SIZE * (f - value) for f, value in rest.items()}
-    return distributed(put_in(e, moved).diff(_SIZE).xreplace({_SIZE: sp.S.Zero}))
+    """The slope of e at rest in the direction of the fields' distance from rest."""
+    return distributed(sp.Add(*(c * _slope(product, rest) for product, c in terms(e).items())))
+
+
+def _slope(product: sp.Expr, rest: Mapping[sp.Expr, sp.Expr]) -> sp.Expr:
+    """That of a product of powers of fields and their derivatives: the sum over the factors that move."""
+    factors = [f.as_base_exp() for f in sp.Mul.make_args(product)]
+    values = [put_in(base, rest) for base, _ in factors]
+    if sum(power for (_, power), value in zip(factors, values, strict=True) if value == 0) > 1:
+        return sp.S.Zero
+    slopes = []
+    for k, (base, power) in enumerate(factors):
+        others = [v**p for i, ((_, p), v) in enumerate(zip(factors, values, strict=True)) if i != k]
+        slopes.append(power * values[k] ** (power - 1) * (base - values[k]) * sp.Mul(*others))
+    return sp.Add(*slopes)

@@ -2,8 +2,10 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from geocosserat.algebra.exponential import rotation_from_vector
 from geocosserat.discretisation.mesh import Array, Mesh, make_mesh
@@ -135,8 +137,8 @@ def _sample(structure: RodStructure, model: RodModel, mesh: Mesh) -> tuple[Array
         "mobility": np.linalg.inv(friction),
         "left_friction": friction[:1],
         "right_friction": friction[-1:],
-        "left_mobility": _padded(np.linalg.inv(friction[:1, turns, turns]), model.group.translations),
-        "right_mobility": _padded(np.linalg.inv(friction[-1:, turns, turns]), model.group.translations),
+        "left_mobility": _padded(np.linalg.inv(friction[:1, turns, turns])),
+        "right_mobility": _padded(np.linalg.inv(friction[-1:, turns, turns])),
     }
 
     def entry(c: Coefficient) -> Array:
@@ -173,9 +175,10 @@ def _slack(model: RodModel, friction: Array, stress: str) -> float:
     return SLACK / (float(friction[:, 0, 0].max()) * model.length**order)
 
 
-def _padded(matrices: Array, before: int) -> Array:
-    """Matrices with so many rows and columns of zeros put before."""
-    return np.pad(matrices, ((0, 0), (before, 0), (before, 0)))
+def _padded(turns: NDArray[np.floating[Any]]) -> Array:
+    """Matrices for rotations as matrices for all motions: translations, of which there are 2 or 3, come first."""
+    before = 2 if turns.shape[-1] == 1 else 3
+    return np.pad(turns, ((0, 0), (before, 0), (before, 0))).astype(np.float64)
 
 
 def _steps(scene: Scene) -> list[float]:

@@ -13,7 +13,8 @@ Array = NDArray[np.float64]
 class Callbacks:
     """Addresses of C functions with the signatures of CVODE's callbacks, for integrations that never leave C.
 
-    data: what they take as their user data; keep: whatever must stay alive while they are used.
+    data: what they take as their user data; keep: whatever must stay alive while they are used. The residuals are
+    those of IDA, of kernels with constraints; 0 where there are none.
     """
 
     data: int
@@ -22,6 +23,10 @@ class Callbacks:
     setup: int
     solve: int
     keep: Any
+    residual: int = 0
+    residual_jacobian: int = 0
+    residual_setup: int = 0
+    residual_solve: int = 0
 
 
 @runtime_checkable
@@ -35,7 +40,8 @@ class NativeKernel(Protocol):
 class Kernel(Protocol):
     """A first-order system y' = f(t, y) with its linear algebra.
 
-    size: number of state entries. backend: "c" or "numpy".
+    size: number of state entries. backend: "c" or "numpy". algebraic (size,): 1 for entries that are fixed by a
+    constraint f_i(t, y) = 0, linear in all of them, and have no rate; 0 for the others.
     """
 
     @property
@@ -43,6 +49,9 @@ class Kernel(Protocol):
 
     @property
     def backend(self) -> str: ...
+
+    @property
+    def algebraic(self) -> Array: ...
 
     def rate(self, t: float, y: Array, out: Array) -> None:
         """f(t, y) into out; y (size,) contiguous, not written."""
@@ -54,7 +63,8 @@ class Kernel(Protocol):
         """Linearise at (t, y), block by block, for the factors to come."""
 
     def factor(self, gamma: float) -> None:
-        """Factor 1 - gamma df/dy at the state last prepared; linear in the number of elements.
+        """Factor 1 - gamma df/dy at the state last prepared, rows of constraints as df/dy; linear in the number of
+        elements.
 
         Raises numpy.linalg.LinAlgError if a block is singular.
         """

@@ -45,6 +45,12 @@ int problem_jacobian(double t, void *y, void *rate, void *J, void *problem, void
 int problem_setup(double t, void *y, void *rate, int usable, int *renewed, double gamma, void *problem);
 int problem_solve(double t, void *y, void *rate, void *b, void *x, double gamma, double tolerance, int side,
                   void *problem);
+int problem_residual(double t, void *y, void *yp, void *residual, void *problem);
+int problem_residual_jacobian(double t, double c, void *y, void *yp, void *residual, void *J, void *problem,
+                              void *a1, void *a2, void *a3);
+int problem_residual_setup(double t, void *y, void *yp, void *residual, double c, void *problem);
+int problem_residual_solve(double t, void *y, void *yp, void *residual, void *b, void *x, double c, double tolerance,
+                           void *problem);
 """
 
 
@@ -136,7 +142,10 @@ class NativeRod:
             return int(ffi.cast("uintptr_t", thing))
 
         lib = self._lib
+        constrained = ("residual", "residual_jacobian", "residual_setup", "residual_solve")
+        residuals = {name: address(getattr(lib, f"problem_{name}")) for name in constrained if self.algebraic.any()}
         return Callbacks(
+            **residuals,
             data=address(problem),
             rate=address(lib.problem_rate),
             jacobian=address(lib.problem_jacobian),

@@ -1,20 +1,19 @@
 """One door to all integrators, chosen by name. Nothing here knows what a rod is."""
 
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import partial
 from importlib import import_module
-from typing import TypeAlias
 
 import numpy as np
 
 from geocosserat.kernel.contract import Array, Kernel, NativeKernel
 from geocosserat.solver.cvode_native import cvode_native
+from geocosserat.solver.ida_native import ida_native
 from geocosserat.solver.pieces import in_pieces
+from geocosserat.solver.reduced import Integrator, reduced
 from geocosserat.solver.sundials import sundials
 from geocosserat.solver.trajectory import Frame, Progress, Trajectory
-
-Integrator: TypeAlias = Callable[[Kernel, Array, Array, float, Array, Progress, Frame], Trajectory]
 
 METHODS = ("cvode", "radau", "bdf", "lsoda")
 
@@ -62,11 +61,15 @@ def integrate(
 
 
 def _chosen(method: str, kernel: Kernel) -> Integrator:
-    """The integrator of that name; CVODE is called directly where the kernel and the installation allow it."""
-    if method != "cvode":
-        return _integrator("scipy_methods", method)
-    library = sundials() if isinstance(kernel, NativeKernel) else None
-    return partial(cvode_native, library) if library is not None else _integrator("cvode", "cvode")
+    """The integrator of that name; SUNDIALS is called directly where the kernel and the installation allow it: CVODE, or
+    IDA where there are constraints."""
+    constrained = bool(np.any(kernel.algebraic))
+    if method == "cvode" and isinstance(kernel, NativeKernel):
+        library = sundials("IDA" if constrained else "CVode")
+        if library is not None:
+            return partial(ida_native if constrained else cvode_native, library)
+    found = _integrator("cvode", "cvode") if method == "cvode" else _integrator("scipy_methods", method)
+    return reduced(found) if constrained else found
 
 
 def _integrator(module: str, name: str) -> Integrator:

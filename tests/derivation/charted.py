@@ -94,6 +94,7 @@ def _times(p: list[Any], q: list[Any]) -> list[Any]:
     ]
 
 
+@lru_cache(maxsize=100)
 def measured(group: Group, name: str, point: Point) -> dict[sp.Expr, sp.Expr]:
     """Turn, its slope, twist, frame and place of that motion at a point, by the fields of the chart-free equations.
 
@@ -104,7 +105,8 @@ def measured(group: Group, name: str, point: Point) -> dict[sp.Expr, sp.Expr]:
     with mp.workdps(PRECISE):
         u, t = (mp.mpf(x.p) / x.q for x in point)
 
-        def pose(*at: Any) -> mp.matrix:
+        @lru_cache(maxsize=100)
+        def pose(precision: int, *at: Any) -> mp.matrix:
             g = mp.eye(n + 1)
             values = _function(group, name)(*at)
             g[1:, 0], g[1:, 1:] = mp.matrix(values[:n]), rotation(name, values[n:])
@@ -112,11 +114,11 @@ def measured(group: Group, name: str, point: Point) -> dict[sp.Expr, sp.Expr]:
 
         def slope(orders: tuple[int, int]) -> mp.matrix:
             out = mp.matrix(n + 1)
-            for i, j in np.ndindex(n + 1, n + 1):
-                out[i, j] = mp.diff(lambda *at: pose(*at)[i, j], (u, t), orders) if i else 0
+            for index in np.ndindex(n + 1, n + 1):
+                out[index] = mp.diff(lambda *at, index=index: pose(mp.mp.prec, *at)[index], (u, t), orders)
             return out
 
-        g = pose(u, t)
+        g = pose(mp.mp.prec, u, t)
         inverse = mp.inverse(g)
         E, V = inverse * slope((1, 0)), inverse * slope((0, 1))
         bent = inverse * slope((2, 0)) - E * E

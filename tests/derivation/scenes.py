@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import dataclasses
+from functools import lru_cache
 from itertools import combinations
 
 import sympy as sp
 
 from geocosserat.algebra.groups import SE2, SE3, Group
 from geocosserat.derivation.distribute import terms
+from geocosserat.derivation.equations import derive
+from geocosserat.derivation.limit import LimitEquations, limit
+from geocosserat.derivation.records import FieldEquations
 from geocosserat.model.effects.couple import Couple
 from geocosserat.model.effects.effect import Effect
 from geocosserat.model.effects.field import Field
@@ -84,26 +88,43 @@ FULL = {group: dataclasses.replace(BASE[group], effects=tuple(e for e, _ in effe
 
 PLANAR_SUBSETS = [subset for size in (1, 2) for subset in combinations(SE2.strain, size)]
 SPATIAL_SUBSETS = [
-    ("h1",), ("h2",), ("h3",), ("Pi1",), ("Pi3",), ("h1", "h2"), ("h2", "h3"), ("h1", "Pi1"), ("h2", "Pi3"),
-    ("h1", "h2", "h3"), ("Pi1", "Pi2", "Pi3"), ("h1", "Pi2", "Pi3"), ("h1", "h2", "h3", "Pi1"),
-    ("h1", "h3", "Pi1", "Pi3"), ("h2", "h3", "Pi1", "Pi2", "Pi3"), ("h1", "h2", "h3", "Pi2", "Pi3"),
-    ("h1", "h2", "h3", "Pi1", "Pi2"), ("h1", "h3", "Pi1", "Pi2", "Pi3"),
+    ("h1",), ("Pi1",), ("h1", "h2"), ("h2", "Pi3"), ("h1", "h2", "h3"), ("Pi1", "Pi2", "Pi3"), ("h1", "Pi2", "Pi3"),
+    ("h1", "h2", "h3", "Pi1"), ("h1", "h3", "Pi1", "Pi3"), ("h2", "h3", "Pi1", "Pi2", "Pi3"),
+    ("h1", "h2", "h3", "Pi2", "Pi3"), ("h1", "h2", "h3", "Pi1", "Pi2"),
 ]  # fmt: skip
+_WITHOUT_FRICTION = {*PLANAR_SUBSETS, ("h2",), ("h2", "h3"), ("h1", "h2", "h3"), ("h1", "h2", "h3", "Pi1")}
 FROZEN = {
     f"{name}{', no friction' if still else ''}: {' '.join(subset)}": dataclasses.replace(
         BASE[group], frozen=subset, **({"friction": QUASISTATIC[group]} if still else {})
     )
-    for name, group, subsets in (("planar", SE2, PLANAR_SUBSETS), ("spatial", SE3, SPATIAL_SUBSETS))
+    for name, group, subsets in (
+        ("planar", SE2, PLANAR_SUBSETS),
+        ("spatial", SE3, [*SPATIAL_SUBSETS, ("h2",), ("h2", "h3")]),
+    )
     for subset in subsets
     for still in (False, True)
+    if not still or subset in _WITHOUT_FRICTION
 }
 """Rods with frozen modes: all subsets in the plane, a sample in space, with and without rotational friction."""
+
+
+@lru_cache(maxsize=100)
+def derived(name: str) -> FieldEquations:
+    """The equations of that one of FROZEN."""
+    return derive(FROZEN[name])
+
+
+@lru_cache(maxsize=100)
+def limited(name: str) -> LimitEquations:
+    """Its limit."""
+    return limit(derived(name))
 
 
 def same(a: sp.Expr, b: sp.Expr) -> bool:
     """Equal in every term, and as numbers at two random values of every field and derivative to 30 digits."""
     close = all(
-        abs(random_value(a - b, seed).xreplace(NUMBERS).evalf(40)) <= TINY * (1 + abs(number(b, seed))) for seed in (3, 5)
+        abs(random_value(a - b, seed).xreplace(NUMBERS).evalf(40)) <= TINY * (1 + abs(number(b, seed)))
+        for seed in (3, 5)
     )
     return terms(a - b) == {} and bool(close)
 

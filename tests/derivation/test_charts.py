@@ -220,7 +220,9 @@ def test_the_charts_of_a_group_are_named_the_default_first() -> None:
     assert chart_names(SE3) == tuple(SPATIAL) == ("rotation-vector", "quaternion", "cayley", "euler", "matrix")
     assert chart_of(SE2).name == "angle"
     assert chart_of(SE3).name == "rotation-vector"
-    with pytest.raises(ValueError, match="chart: expected one of rotation-vector, .*matrix, found 'angle'; choose one"):
+    with pytest.raises(
+        ValueError, match=r"chart: expected one of rotation-vector, .*matrix, found 'angle'; choose one"
+    ):
         chart_of(SE3, "angle")
     with pytest.raises(ValueError, match="chart: expected one of angle, found 'euler'"):
         chart_of(SE2, "euler")

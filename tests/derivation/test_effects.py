@@ -185,9 +185,7 @@ def test_energy_is_stored_from_what_the_wrench_does(frozen: tuple[str, ...], gro
     done = sp.Add(*(v * w for v, w in zip(V, j, strict=True)))
     active = sp.Add(*(s * e.diff(T) for s, e in zip(S, equations.reference, strict=True)))
     violated = sp.Add(*(v * e.residual for v, e in zip(V, equations.motion, strict=True)))
-    constrained = sp.Add(
-        *(s * e.residual for s, e in zip(equations.multipliers, equations.constraints, strict=True))
-    )
+    constrained = sp.Add(*(s * e.residual for s, e in zip(equations.multipliers, equations.constraints, strict=True)))
     medium, push = acting.medium(group, model.effects), acting.push(group, model.effects)
     lost = sp.Add(*((v - m) * (p - w) for v, m, p, w in zip(V, medium, push, j, strict=True)))
     for seed in (50, 51):

@@ -71,13 +71,10 @@ def test_the_balance_is_that_of_forces_and_moments_in_the_world(model: RodModel)
     turning = R if n == 3 else np.array([[1]], dtype=object)
     # F' + f, then M' + r' x F + m, all in world components; in the plane moments are numbers
     world_force = R @ force
-    lever = (
-        np.cross(slope, world_force) if n == 3 else [slope[0] * world_force[1] - slope[1] * world_force[0]]
-    )
+    lever = np.cross(slope, world_force) if n == 3 else [slope[0] * world_force[1] - slope[1] * world_force[0]]
     forces = [x.diff(U) + y for x, y in zip(world_force, R @ forcing, strict=True)]
     moments = [
-        (sp.Integer(0) + x).diff(U) + y + z
-        for x, y, z in zip(turning @ moment, lever, turning @ torque, strict=True)
+        (sp.Integer(0) + x).diff(U) + y + z for x, y, z in zip(turning @ moment, lever, turning @ torque, strict=True)
     ]
     for u, t in POINTS:
         left = np.array([value(e.left, explicit, u, t) for e in equations.balance], dtype=object)
@@ -99,9 +96,7 @@ def test_the_stress_law_is_stiffness_times_strain(model: RodModel) -> None:
     reference = np.array([evaluate(e, at) for e in model.reference])
     E = np.random.default_rng(46).normal(size=model.group.dimension)
     explicit = {name: sp.Float(x, 40) for name, x in zip(model.group.strain, E, strict=True)}
-    found = [
-        float(value(e.right, explicit, sp.Rational(3, 8), sp.Rational(5, 8))) for e in equations.stress_law
-    ]
+    found = [float(value(e.right, explicit, sp.Rational(3, 8), sp.Rational(5, 8))) for e in equations.stress_law]
     assert found == pytest.approx(K @ (E - reference), rel=1e-13)
     assert tuple(e.left for e in equations.stress_law) == equations.stress
 
@@ -116,9 +111,7 @@ def test_the_wrench_is_drag_and_weight_seen_in_the_moving_frame(model: RodModel)
     Gamma = np.array([[evaluate(e, at) for e in row] for row in model.friction])
     V = np.array([float(x.evalf(20, subs={U: u, T: t})) for x in motion.twist])
     R = np.array([[float(x.evalf(20, subs={U: u, T: t})) for x in row] for row in motion.rotation])
-    weight = np.sum(
-        [[evaluate(e, at) for e in effect.force] for effect in model.effects] or [[0.0] * group.space], 0
-    )
+    weight = np.sum([[evaluate(e, at) for e in effect.force] for effect in model.effects] or [[0.0] * group.space], 0)
     expected = -Gamma @ V
     expected[: group.space] += R.T @ weight
     found = [float(value(e.right, motion.fields(), u, t)) for e in equations.wrench_law]
@@ -156,9 +149,7 @@ def test_stored_energy_changes_by_work_minus_dissipation(model: RodModel) -> Non
     equations = derive(model)
     rates = {e.left: e.right for e in equations.compatibility}
     assert equations.energy is not None
-    S = dict(
-        zip((e.left for e in equations.stress_law), (e.right for e in equations.stress_law), strict=True)
-    )
+    S = dict(zip((e.left for e in equations.stress_law), (e.right for e in equations.stress_law), strict=True))
     V = equations.twist
     stored = equations.energy.diff(T).xreplace(rates)
     flux = sp.Add(*(s * v for s, v in zip(S.values(), V, strict=True))).diff(U)
@@ -204,9 +195,7 @@ def test_a_planar_rod_is_a_spatial_rod_in_the_plane(weight: tuple[str, ...]) -> 
         image = {}
         for f in functions:
             name = f.func.__name__
-            image[f] = frame.get(
-                name, field(name) if name in kept else field(names[name]) if name in names else 0
-            )
+            image[f] = frame.get(name, field(name) if name in kept else field(names[name]) if name in names else 0)
         return e.subs(image).doit()
 
     for part in ("compatibility", "balance", "motion", "stress", "wrench", "left end", "right end"):
@@ -222,8 +211,7 @@ def test_in_space_the_components_are_cross_products() -> None:
     """h_t = v' + Pi x v - Omega x h, Pi_t = Omega' + Pi x Omega; the balance has Pi x F, Pi x M, h x F."""
     equations = derive(PLAIN_SPATIAL)
     E, V, S, j = (
-        np.array(x, dtype=object)
-        for x in (equations.turn, equations.twist, equations.stress, equations.wrench)
+        np.array(x, dtype=object) for x in (equations.turn, equations.twist, equations.stress, equations.wrench)
     )
     h, Pi, v, Omega, F, M = E[:3], E[3:], V[:3], V[3:], S[:3], S[3:]
     rates = [*(np.cross(Pi, v) - np.cross(Omega, h)), *np.cross(Pi, Omega)]
@@ -239,9 +227,7 @@ def test_in_space_the_components_are_cross_products() -> None:
 def test_the_stress_at_a_loaded_end_does_the_power_of_the_load(side: str, group: object, frame: str) -> None:
     """Outward stress times twist is force . velocity + torque . angular velocity, in the load's frame."""
     model = HEAVY_PLANAR if group is SE2 else HEAVY_SPATIAL
-    load = (
-        (vector("a", "b*t"), vector("g")) if group is SE2 else (vector("a", "b*t", "g"), vector(1, "t", "a"))
-    )
+    load = (vector("a", "b*t"), vector("g")) if group is SE2 else (vector("a", "b*t", "g"), vector(1, "t", "a"))
     end = End("free", force=load[0], torque=load[1], frame="body" if frame == "body" else "world")
     equations = derive(dataclasses.replace(model, effects=(), **{side: end}))
     motion = random_motion(model.group, 41)
@@ -274,9 +260,7 @@ def test_a_rod_that_does_not_see_the_world_has_no_orientation() -> None:
     follower = dataclasses.replace(PLAIN_SPATIAL, right=End("free", force=vector(0, "a", 0), frame="body"))
     for model in (PLAIN_PLANAR, PLAIN_SPATIAL, follower):
         equations = derive(model)
-        assert (
-            equations.orientation.fields == equations.orientation_rates == equations.orientation_slopes == ()
-        )
+        assert equations.orientation.fields == equations.orientation_rates == equations.orientation_slopes == ()
         assert not any(name.startswith(("theta", "e1", "e2", "e3")) for name in equations.fields)
         assert "weight" not in equations.terms
 
@@ -303,9 +287,7 @@ def test_zero_coefficients_leave_no_field_and_no_term() -> None:
 
 def test_terms_that_cancel_are_gone() -> None:
     """With equal stretch and shear stiffness the turning moment h1 F2 - h2 F1 keeps only its linear part."""
-    assert derive(PLAIN_PLANAR).motion[2].right == sp.Symbol("kappa", real=True) * field("h2") + field(
-        "Pi"
-    ).diff(U)
+    assert derive(PLAIN_PLANAR).motion[2].right == sp.Symbol("kappa", real=True) * field("h2") + field("Pi").diff(U)
 
 
 def test_the_parameters_listed_are_those_that_occur() -> None:
@@ -321,9 +303,7 @@ def test_the_fields_listed_are_those_that_occur() -> None:
     assert derive(HEAVY_PLANAR).fields[-1] == "theta"
     for model in RODS.values():
         equations = derive(model)
-        occurring = {
-            f for part in equations.parts.values() for e in part for f in field_names((e.left, e.right))
-        }
+        occurring = {f for part in equations.parts.values() for e in part for f in field_names((e.left, e.right))}
         assert set(equations.fields) == occurring
 
 
@@ -349,9 +329,7 @@ def test_an_asymmetric_stiffness_has_no_energy() -> None:
     odd = (vector("kappa", 0, 0), vector(0, 1, "a"), vector(0, "-a", 1))
     equations = derive(dataclasses.replace(PLAIN_PLANAR, stiffness=odd))
     assert equations.energy is None
-    assert (
-        sp.expand(equations.stress_law[2].right - field("Pi") + sp.Symbol("a", real=True) * field("h2")) == 0
-    )
+    assert sp.expand(equations.stress_law[2].right - field("Pi") + sp.Symbol("a", real=True) * field("h2")) == 0
 
 
 @pytest.mark.parametrize(

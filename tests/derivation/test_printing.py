@@ -218,7 +218,7 @@ def test_derivatives_have_dots_and_primes() -> None:
 
 def test_an_unknown_form_is_refused() -> None:
     """The forms that there are, are named."""
-    with pytest.raises(ValueError, match="form: expected one of intrinsic, .*found 'printed'; choose one"):
+    with pytest.raises(ValueError, match=r"form: expected one of intrinsic, .*found 'printed'; choose one"):
         document(derive(PLAIN_PLANAR), "printed")
 
 

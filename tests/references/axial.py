@@ -7,12 +7,12 @@ A rod that stays straight along x has r = (x(u, t), 0), h1 = x', F1 = k1 (x' - 1
 * weight f = w, one end held: k1 (x' - 1) = w (L - u). Both ends held L apart: w (L / 2 - u). Let go unstretched, the
   displacement approaches these as a sine series; a free rod falls with w / friction1, unstretched.
 * flow of velocity e x along x, both ends free: f = friction1 e x, so k1 x'' = -friction1 e x with x' = 1 at both ends:
-  x = sin(q s) / (q cos(q L / 2)), s = u - L / 2, q^2 = friction1 e / k1. There is such a state while q L < pi (beyond, the
-  rod is drawn out for ever); for e < 0 sines are hyperbolic. Modes cos(n pi u / L) grow at e - k1 / friction1 (n pi /
-  L)^2, so the centre leaves at the rate e.
+  x = sin(q s) / (q cos(q L / 2)), s = u - L / 2, q^2 = friction1 e / k1. There is such a state while q L < pi (beyond,
+  the rod is drawn out for ever); for e < 0 sines are hyperbolic. Modes cos(n pi u / L) grow at the rates
+  e - k1 / friction1 (n pi / L)^2, so the centre leaves at the rate e.
 * trap to the point 0, f = -trap x: the flow with e = -trap / friction1, so the rod is compressed and its centre returns
-  at trap / friction1. Displaced across, all sections feel the same force: the centre returns at trap / friction2 and the
-  rod is not bent, whatever the distance.
+  at trap / friction1. Displaced across, all sections feel the same force: the centre returns at trap / friction2 and
+  the rod is not bent, whatever the distance.
 * trap to the line of the rest shape, f = -trap (r - r0): a shift is the same for all sections and decays with trap /
   friction1 along and trap / friction2 across, unstretched.
 
@@ -68,9 +68,7 @@ def falling(weight: float, friction: float) -> float:
     return weight / friction
 
 
-def extended(
-    u: npt.ArrayLike, extension: float, k1: float, friction1: float, length: float
-) -> tuple[Array, Array]:
+def extended(u: npt.ArrayLike, extension: float, k1: float, friction1: float, length: float) -> tuple[Array, Array]:
     """Position x and stretch h1 at u, each (points,), at rest in the flow x_t = extension x, centre at x = 0.
 
     Raises ValueError at and above the `critical_extension`.
@@ -118,9 +116,9 @@ def carried(
 
 
 def returning(displacement: npt.ArrayLike, t: float, trap: float, friction: npt.ArrayLike) -> Array:
-    """Displacement at t of a straight free rod that a trap to its own line pulls back; one entry an axis of the section.
+    """Displacement at t of a straight free rod that a trap to its own line pulls back.
 
-    Across the rod it is also that of a trap to a point.
+    One entry for each axis of the section. Across the rod it is also that of a trap to a point.
     """
     rate = trap / np.asarray(friction, dtype=float)
     return np.asarray(np.asarray(displacement, dtype=float) * np.exp(-rate * t))

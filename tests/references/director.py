@@ -1,9 +1,9 @@
 """The direction of a plane vector that a constant matrix carries, d_t = A d: its angle in time, unwrapped.
 
-The trace of A only stretches d. Without it A^2 = D I, so exp(t A) = C I + S A with C, S = cosh(s t), sinh(s t) / s for
-D = s^2 > 0; 1, t for D = 0; cos(s t), sin(s t) / s for D = -s^2 < 0. In the last case d turns for ever, by half a turn in
-each time pi / s and always the same way; in the others it turns by less than half a turn in all. Source: the theorem
-of Cayley and Hamilton.
+The trace of A only stretches d. Without it A^2 = D I, so exp(t A) = C I + S A with C, S = cosh(s t), sinh(s t) / s
+for D = s^2 > 0; 1, t for D = 0; cos(s t), sin(s t) / s for D = -s^2 < 0. In the last case d turns for ever, by half a
+turn in each time pi / s and always the same way; in the others by less than half a turn in all. Source: the theorem of
+Cayley and Hamilton.
 """
 
 import math

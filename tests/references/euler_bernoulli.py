@@ -26,9 +26,7 @@ import numpy.typing as npt
 from scipy.optimize import brentq
 
 Array = npt.NDArray[np.float64]
-Ends = Literal[
-    "clamped-clamped", "clamped-pinned", "clamped-free", "pinned-pinned", "pinned-free", "free-free"
-]
+Ends = Literal["clamped-clamped", "clamped-pinned", "clamped-free", "pinned-pinned", "pinned-free", "free-free"]
 STEP = 0.02  # of b L, in which a root is looked for; they lie about pi apart
 
 
@@ -54,9 +52,7 @@ def characteristic(b: float, rotary: float, ends: Ends) -> float:
     return s
 
 
-def decay_rates(
-    length: float, k3: float, friction2: float, friction3: float, ends: Ends, number: int
-) -> Array:
+def decay_rates(length: float, k3: float, friction2: float, friction3: float, ends: Ends, number: int) -> Array:
     """The `number` slowest rates above zero (1 / time), increasing, shape (number,): rigid motions are left out."""
     rotary = friction3 / (friction2 * length**2)
     found: list[float] = []

@@ -1,7 +1,7 @@
 """A rigid straight free planar rod in a linear flow, u(r) = velocity + G r: Jeffery's orbit, and the stress carried.
 
-The rod r = X + s e_1(theta), -L/2 <= s <= L/2, moves with v = X_t + s theta_t e_2. Force density and couple density on it
-are those of the drag relative to the flow, which itself turns with half its vorticity, w = (G_21 - G_12) / 2:
+The rod r = X + s e_1(theta), -L/2 <= s <= L/2, moves with v = X_t + s theta_t e_2. Force density and couple density on
+it are those of the drag relative to the flow, which itself turns with half its vorticity, w = (G_21 - G_12) / 2:
 
     f1 = friction1 e_1 . (u - v),   f2 = friction2 e_2 . (u - v),   m = friction3 (w - theta_t)
 
@@ -10,8 +10,9 @@ No force in all: X_t = velocity + G X. No torque in all, with e_2 . G e_1 = w + 
     theta_t = w + B e_2 . S e_1,   B = friction2 L^2 / 12 / (friction2 L^2 / 12 + friction3)
 
 Jeffery's equation with the shape factor B; friction1 has no part in it. The director e_1 is the direction of a vector
-that W + B S carries (W the antisymmetric part), see `director`. In the shear u = (g y, 0), theta_t = -g / 2 (1 - B cos(2
-theta)), a full turn takes 4 pi / (g sqrt(1 - B^2)). The rod keeps its shape only if it carries (F1' + f1 = 0 and so on)
+that W + B S carries (W the antisymmetric part), see `director`. In the shear u = (g y, 0) this is theta_t =
+-g / 2 (1 - B cos(2 theta)), and a full turn takes 4 pi / (g sqrt(1 - B^2)). The rod keeps its shape only if it carries
+(F1' + f1 = 0 and so on)
 
     F1 = friction1 (e_1 . G e_1) (L^2 / 4 - s^2) / 2
     F2 = friction2 (e_2 . G e_1 - theta_t) (L^2 / 4 - s^2) / 2

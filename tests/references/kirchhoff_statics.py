@@ -4,12 +4,13 @@
     M' + Pi x M + e_1 x F = 0,   F = R^T n,   n = force + weight (L - u)
 
 h = e_1 exactly, so the force F is not elastic: it is the multiplier that holds the rod to its length and its sections
-across it, and the balance n' + weight = 0 alone gives it. Any of the three stiffnesses may be `math.inf`: that component
-of Pi keeps its reference, and that of M is a multiplier too. The moment at the clamp is what is sought: with it the
-equations are integrated to the tip (DOP853), where the moment must be R^T torque; Newton's method, by finite
-differences, while the loads are raised in steps. The branch of the unloaded rod is followed as long as the steps of the
-moment are small. Source: A. E. H. Love, *Mathematical Theory of Elasticity*, chapters XVIII-XIX; H. B. Keller, *Numerical
-Methods for Two-Point Boundary-Value Problems*.
+across it, and the balance n' + weight = 0 alone gives it. Any of the three stiffnesses may be `math.inf`: that
+component of Pi keeps its reference, and that of M is a multiplier too. The moment at the clamp is what is sought: with
+it the equations are integrated to the tip (DOP853), where the moment must be R^T torque; Newton's method, by finite
+differences, while the loads are raised in steps. The branch of the unloaded rod is followed as long as the steps of
+the moment are small: `solve` does not look for bifurcations, keep to loads below buckling. Source: A. E. H. Love,
+*Mathematical Theory of Elasticity*, chapters XVIII-XIX; H. B. Keller, *Numerical Methods for Two-Point Boundary-Value
+Problems*.
 
 Dimensions: stiffness force x length^2; Pi 1 / length; force, torque (force x length) and weight (force / length) are
 dead, in world components.

@@ -215,5 +215,5 @@ def response(
 
 
 def _rows(left: Kind, place: int) -> tuple[int, ...]:
-    """Which two equations an end condition replaces: at the left those of the held components, at the right the rest."""
+    """Which two equations the end conditions replace: at the left those of what is held there, at the right others."""
     return HELD[left] if place == 0 else tuple(k for k in range(4) if k not in HELD[left])

@@ -11,9 +11,9 @@ and the lag delta = spin t + phase - theta obeys delta_t = spin - critical sin(d
 * |spin| <= critical: the rod follows with sin(delta) = spin / critical.
 * |spin| > critical: it slips; on average it turns with sign(spin) (|spin| - sqrt(spin^2 - critical^2)).
 
-At all times, from any start: the half lag is the direction of a vector carried by a constant matrix, see `director`. The
-rod must be stiff: it carries F2 and M, and bends by their share of k2 and k3. Source: B. Frka-Petesic et al., Europhys.
-Lett. 96 (2011) 64002 (rods in a rotating field).
+At all times, from any start: the half lag is the direction of a vector carried by a constant matrix, see `director`.
+The rod must be stiff: it carries F2 and M, and bends by their share of k2 and k3. Source: R. Adler, Proc. IRE 34
+(1946) 351 (the equation of the lag).
 
 Dimensions: moment times field, mu B, force; friction2 force x time / length^2; friction3 force x time; spin radians
 / time.
@@ -46,7 +46,9 @@ class Rotor:
     @property
     def drag(self) -> float:
         """Torque per angular velocity, force x length x time."""
-        return self.friction3 * self.length + self.friction2 * self.length**3 / (12.0 if self.about == "middle" else 3.0)
+        return self.friction3 * self.length + self.friction2 * self.length**3 / (
+            12.0 if self.about == "middle" else 3.0
+        )
 
     @property
     def critical(self) -> float:
@@ -82,7 +84,7 @@ def angle(rotor: Rotor, start: float, t: float) -> float:
 def stress(rotor: Rotor, u: npt.ArrayLike, lag: float) -> Array:
     """(F1, F2, M) at u, (points, 3), that the rigid rod carries at the lag.
 
-    F2' = friction2 v2 and M' = -F2 + friction3 Omega - couple, from nothing at u = L; u = 0 is the pin, if there is one.
+    F2' = friction2 v2 and M' = -F2 + friction3 Omega - couple, from nothing at u = L; a pin is at u = 0.
     """
     at = np.asarray(u, dtype=float)
     turning = rotor.critical * math.sin(lag)

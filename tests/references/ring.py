@@ -7,20 +7,20 @@ The reference is E0 = (1, 0, q), q = 2 pi / L, the ends joined. About rest phi' 
     Pi_t = Omega'                     friction3 Omega = M' + F2
 
 with (F1, F2, M) = K times the small excess strain e. The coefficients are constant, so a mode is the real part of
-exp(i n q u) times a vector: with A = i n q + ad_E0 the first column is e_t = A V and the second Gamma V = -A^H K e, hence
+exp(i n q u) times a vector: with A = i n q + ad_E0 the first column is e_t = A V, the second Gamma V = -A^H K e, and
 
     e_t = -A Gamma^-1 A^H K e,
 
-3 x 3, whose eigenvalues are real and not negative: it is a product of two such Hermitian matrices. A is singular for n = 1
-(a shift) and n = 0 (a turn); the strain of the eigenvalue zero there would open the ring, so those n have two rates.
-For n = 0: k1 q^2 / friction2, a change of size, and k2 (1 / friction3 + q^2 / friction1), sections tilting.
+3 x 3. The rates are real and not negative, as of a product of two such Hermitian matrices. A is singular for n = 1 (a
+shift) and n = 0 (a turn); the strain of the eigenvalue zero there would open the ring, so those n have two rates. For
+n = 0: k1 q^2 / friction2, a change of size, and k2 (1 / friction3 + q^2 / friction1), sections tilting.
 
-The inextensible, unshearable ring has one rate for each n >= 2: with the displacement cos(n q u) outwards, sin(n q u) / n
-along, curvature q^2 (n^2 - 1), rotation q (n - 1 / n),
+The inextensible, unshearable ring has one rate for each n >= 2: displaced by cos(n q u) outwards, it moves by
+sin(n q u) / n along, its curvature changes by q^2 (n^2 - 1), its sections turn by q (n - 1 / n):
 
     rate = k3 q^4 (n^2 - 1)^2 / (friction2 + friction1 / n^2 + friction3 q^2 (n - 1 / n)^2).
 
-Source: Fourier series; R. Hoppe, J. reine angew. Math. 73 (1871) 158 for the ring with inertia, (n^2 - 1)^2 / (1 + 1 / n^2).
+Source: Fourier series; R. Hoppe, J. reine angew. Math. 73 (1871) 158 for the ring with inertia.
 
 Dimensions: k1, k2 force; k3 force x length^2; friction1, friction2 force x time / length^2; friction3 force x time.
 """

@@ -1,15 +1,15 @@
 """A rod that slides along itself: the helix (or arc) of uniform turn E, phi(u, t) = base exp((u + s(t)) E).
 
-Then phi' = phi E and phi_t = phi V with V = s_t E, so compatibility E_t = V' + [E, V] = 0 holds: V is parallel to E. The
-balance Sigma' + ad*_E Sigma - Gamma V + j = 0 holds with the wrench density
+Then phi' = phi E and phi_t = phi V with V = s_t E, so compatibility E_t = V' + [E, V] = 0 holds: V is parallel to E.
+The balance Sigma' + ad*_E Sigma - Gamma V + j = 0 holds with the wrench density
 
     j = s_t Gamma E     (body components, friction Gamma any matrix)
 
 if the stress is uniform and ad*_E Sigma = 0. Two cases:
 
 * E is the reference: Sigma = 0. Ends may be free, or driven with the twist s_t E; both are exact.
-* Sigma = (a Pi, a h + b Pi), see `helix.uniform_stress`: the right end is loaded with Sigma and the left with -Sigma, in
-  the body, or both are driven with s_t E; the reference is E - K^-1 Sigma.
+* Sigma = (a Pi, a h + b Pi), see `helix.uniform_stress`: the right end is loaded with Sigma and the left with -Sigma,
+  in the body, or both are driven with s_t E; the reference is E - K^-1 Sigma.
 
 Nothing is stored; the power spent per length is s_t^2 E . Gamma E. Components: planar (3,) or spatial (6,).
 

@@ -43,7 +43,7 @@ def test_in_the_plane_it_is_the_inextensible_elastica(force: tuple[float, float]
 
 
 def test_stiff_rods_tend_to_it() -> None:
-    """The rod of `static_rod` that stretches and shears, extrapolated from three k: tip, rotation and stress to 1e-9."""
+    """The stretching, shearing rod of `static_rod`, extrapolated from three k: tip and stress at the clamp to 1e-9."""
     found = solve(ROD)
     results = []
     for k in (1e3, 2e3, 4e3):

@@ -1,5 +1,6 @@
 """The linear rod: closed forms, matrix exponentials, the equations of the group, and the balance of power."""
 
+import itertools
 import math
 from dataclasses import replace
 
@@ -109,7 +110,7 @@ def test_the_response_agrees_with_matrix_exponentials(rod: Rod, left: End, right
 def test_the_rates_are_where_the_response_has_no_bound(rod: Rod, left: End, right: End) -> None:
     """The collocated equations with i frequency = -rate are singular, and not so half-way to the next rate."""
     rates = decay_rates(rod, left.kind, right.kind, 5)
-    for rate, next_rate in zip(rates[2:], rates[3:], strict=False):
+    for rate, next_rate in itertools.pairwise(rates[2:]):
         sizes = [
             np.abs(response(rod, 1j * x, left, replace(right, torque=1.0, angle=1.0), [0.7]).angle).max()
             for x in (rate * (1.0 + 1e-9), 0.5 * (rate + next_rate))
@@ -154,8 +155,8 @@ def test_the_power_of_a_driven_clamp_is_dissipated() -> None:
     clamp = driven(0.3, -0.2j, 4.0)
     inside = response(ROD, 4.0, clamp, End("free"), at)
     base = response(ROD, 4.0, clamp, End("free"), [0.0])
-    spent = 16.0 * weight @ (
-        ROD.friction2 * np.abs(inside.displacement) ** 2 + ROD.friction3 * np.abs(inside.angle) ** 2
+    spent = (
+        16.0 * weight @ (ROD.friction2 * np.abs(inside.displacement) ** 2 + ROD.friction3 * np.abs(inside.angle) ** 2)
     )
     given = -(base.force[0].conj() * 0.3 + base.moment[0].conj() * -0.2j).real
     assert given == pytest.approx(spent, rel=1e-12)

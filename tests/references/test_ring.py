@@ -14,7 +14,8 @@ RING = Ring(length=2.3, stiffness=(40.0, 25.0, 0.8), friction=(1.0, 1.9, 0.03))
 def _rates_from_energy(ring: Ring, points: int = 25) -> Array:
     """All rates, increasing: energy against drag, in coordinates of the world, by Fourier collocation.
 
-    `points` is odd: no wave is without a slope. Forces of a perturbed ring are derivatives of its energy, by complex steps; their differences are the stiffness.
+    `points` is odd, so that no wave is without a slope. Forces of a perturbed ring are derivatives of its energy, by
+    complex steps; their differences are the stiffness.
     """
     u = ring.length * np.arange(points) / points
     wave = np.fft.fftfreq(points, 1.0 / points) * 1j * ring.curvature
@@ -24,7 +25,7 @@ def _rates_from_energy(ring: Ring, points: int = 25) -> Array:
     place = -e2 / ring.curvature  # r' = e1
 
     def force(moved: Array) -> Array:
-        """K (h - e_1, Pi - q) and its derivative along every coordinate: the gradient of the energy."""
+        """The gradient of the energy in the coordinates, which have `moved` from the circle."""
         steps = moved.astype(complex)[None] + 1e-30j * np.eye(3 * points)
         x, y, turn = np.split(steps, 3, axis=1)
         c, s = np.cos(theta + turn), np.sin(theta + turn)
