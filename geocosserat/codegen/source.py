@@ -64,6 +64,10 @@ def _tapes(p: Pointwise) -> dict[str, Tape]:
         "load_right": record(p.loads[1], prefix="l"),
         "load_left_tangent": _seen_tangent(p.group, p.loads[0]),
         "load_right_tangent": _seen_tangent(p.group, p.loads[1]),
+        "twist_left": record(p.twists[0], prefix="h"),
+        "twist_right": record(p.twists[1], prefix="h"),
+        "twist_left_tangent": _seen_tangent(p.group, p.twists[0]),
+        "twist_right_tangent": _seen_tangent(p.group, p.twists[1]),
         "carry": carry,
         "carry_tangent": Tape(carry_tangent.steps + shift.steps, carry_tangent.outputs + shift.outputs),
     }

@@ -7,7 +7,7 @@ import sympy as sp
 
 from geocosserat.codegen.printing import print_expression, print_tape
 from geocosserat.codegen.tape import Tape
-from geocosserat.discretisation.structure import ZERO, EndStructure, Matrix, RodStructure, Row
+from geocosserat.discretisation.structure import ZERO, EndStructure, Matrix, RodStructure
 from geocosserat.model.expressions import symbols, to_text
 
 
@@ -52,10 +52,6 @@ def _entries(stem: str, matrix: Matrix) -> Tape:
     """A matrix of names as a tape."""
     named = ((i, j, name) for i, row in enumerate(matrix) for j, name in enumerate(row) if name != ZERO)
     return Tape((), tuple((f"{stem}_{i + 1}_{j + 1}", sp.Symbol(name)) for i, j, name in named))
-
-
-def _row(stem: str, row: Row) -> Tape:
-    return Tape((), tuple((f"{stem}_{i + 1}", sp.Symbol(name)) for i, name in enumerate(row) if name != ZERO))
 
 
 class Writer:
@@ -103,11 +99,8 @@ class Writer:
             "driven": [f"medium_{i + 1}" for i in range(group.dimension)],
         }.get(end.kind, [])
         surroundings = tapes["surroundings"].only(felt)
-        twist, mobility, friction = (
-            _row("twist", end.twist or ()),
-            _entries("mobility", end.mobility or ()),
-            _entries("friction", end.friction or ()),
-        )
+        twist = tapes[f"twist_{side}"]
+        mobility, friction = _entries("mobility", end.mobility or ()), _entries("friction", end.friction or ())
         return {
             "side": side,
             "index": "0" if side == "left" else "N - 1",
@@ -115,9 +108,11 @@ class Writer:
             "reads": self.block(surroundings, twist, mobility, friction),
             "surroundings": self.block(surroundings),
             "twist": self.block(twist),
+            "twist_tangent": self.block(tapes[f"twist_{side}_tangent"]),
+            "moved": bool(twist.outputs),
             "mobility": self.block(mobility),
             "friction": self.block(friction),
-            "load": self.block(tapes[f"load_{side}"]) if end.load is not None else None,
+            "load": self.block(tapes[f"load_{side}"]) if end.load else None,
             "load_tangent": self.block(tapes[f"load_{side}_tangent"]),
         }
 
@@ -127,7 +122,7 @@ class Writer:
         ends = [self.end("left", s.left, tapes), self.end("right", s.right, tapes)]
         d = group.dimension
         surrounding = {name for name, _ in tapes["surroundings"].outputs}
-        blocks = {name: self.block(tape) for name, tape in tapes.items() if not name.startswith("load")}
+        blocks = {name: self.block(tape) for name, tape in tapes.items() if not name.startswith(("load", "twist"))}
         turn = self.block(tapes["turn"])
         return {
             **blocks,
@@ -154,7 +149,7 @@ class Writer:
             "active": s.active,
             "dragged": s.dragged,
             "kinds": [end["kind"] for end in ends],
-            "drives": any(end["kind"] == "driven" for end in ends),
+            "drives": any(end["moved"] for end in ends),
             "pushes": [f"wrench_{i + 1}" in surrounding for i in range(d)],
             "drags": [f"medium_{i + 1}" in surrounding for i in range(d)],
             "stepping": any("heaviside" in to_text(c.expression) for c in s.timed if c.expression is not None),

@@ -70,8 +70,6 @@ def _slope(product: sp.Expr, rest: Mapping[sp.Expr, sp.Expr]) -> sp.Expr:
     """That of a product of powers of fields and their derivatives: the sum over the factors that move."""
     factors = [f.as_base_exp() for f in sp.Mul.make_args(product)]
     values = [put_in(base, rest) for base, _ in factors]
-    if sum(power for (_, power), value in zip(factors, values, strict=True) if value == 0) > 1:
-        return sp.S.Zero
     slopes = []
     for k, (base, power) in enumerate(factors):
         others = [v**p for i, ((_, p), v) in enumerate(zip(factors, values, strict=True)) if i != k]

@@ -41,7 +41,7 @@ class Pointwise:
     advection: advection_i_j = d rate_i / d state_j at fixed twist, in terms of value_i
     bracket: ad_i_j, the matrix of ad_E
     surroundings: wrench_i and medium_i (not the zeros), in terms of coefficients and what is seen
-    loads: load_i of the left and of the right end, likewise
+    loads, twists: load_i and twist_i of the left and of the right end, likewise
     pose: position and angle, or position and quaternion, of a carried frame
     carry: rate_i of the pose, from the twist (components v1, ... in the moving frame)
     shift: shift_i_j, the small motion (rotation, then translation, in the moving frame) that a change of pose entry j
@@ -61,6 +61,7 @@ class Pointwise:
     bracket: Named
     surroundings: Named
     loads: tuple[Named, Named]
+    twists: tuple[Named, Named]
     pose: tuple[sp.Symbol, ...]
     carry: Named
     shift: Named
@@ -168,7 +169,8 @@ def pointwise(structure: RodStructure) -> Pointwise:
         advection=_named("advection", advection),
         bracket=_named("ad", ad),
         surroundings={**_formulas("wrench", structure.wrench), **_formulas("medium", structure.medium)},
-        loads=(_formulas("load", structure.left.load or ()), _formulas("load", structure.right.load or ())),
+        loads=(_formulas("load", structure.left.load), _formulas("load", structure.right.load)),
+        twists=(_formulas("twist", structure.left.twist), _formulas("twist", structure.right.twist)),
         pose=pose,
         carry=carry,
         shift=shift,

@@ -99,7 +99,7 @@ class SemiDiscrete:
         return start.position + pose[..., :3] @ start.rotation.T, start.rotation @ turned, None
 
 
-SLACK = 1e-12
+SLACK, PULL = 1e-12, 1e5
 
 QUASI_STATIC = 1e-10
 """Friction of a rotation that has none, relative to what the other motions of a rod of this length feel.
@@ -129,7 +129,7 @@ def _friction(model: RodModel, mesh: Mesh) -> Array:
     return mean
 
 
-def _sample(structure: RodStructure, model: RodModel, mesh: Mesh) -> tuple[Array, Array, Array]:
+def _sample(structure: RodStructure, model: RodModel, mesh: Mesh, start: Poses) -> tuple[Array, Array, Array]:
     u, u_point = mesh.u, mesh.u_point
     friction = _friction(model, mesh)
     turns = slice(model.group.translations, None)
@@ -141,7 +141,12 @@ def _sample(structure: RodStructure, model: RodModel, mesh: Mesh) -> tuple[Array
         "right_mobility": _padded(np.linalg.inv(friction[-1:, turns, turns])),
     }
 
+    homes = {f"{side}_{name}": x for side, n in (("left", 0), ("right", -1)) for name, x in _home(start, n).items()}
+    homes["left_pull"] = homes["right_pull"] = _pull(model, friction)
+
     def entry(c: Coefficient) -> Array:
+        if c.name in homes:
+            return np.array([homes[c.name]])
         if c.name.startswith("slack_"):
             return np.array([_slack(model, friction, c.name.removeprefix("slack_"))])
         stem, i, j = c.name.rsplit("_", 2)
@@ -175,6 +180,22 @@ def _slack(model: RodModel, friction: Array, stress: str) -> float:
     return SLACK / (float(friction[:, 0, 0].max()) * model.length**order)
 
 
+def _home(start: Poses, n: int) -> dict[str, float]:
+    """Where node n is at the start, by the names of the coefficients that say so."""
+    rotation, axes = start.rotation[n], "xyz"[: start.position.shape[-1]]
+    found = {f"home_{axis}": float(x) for axis, x in zip(axes, start.position[n], strict=True)}
+    found |= {f"home_{i + 1}{axis}": float(rotation[k, i]) for k, axis in enumerate(axes) for i in range(len(axes))}
+    return found | {"home_cos": float(rotation[0, 0]), "home_sin": float(rotation[1, 0])}
+
+
+def _pull(model: RodModel, friction: Array) -> float:
+    """How fast an end that strayed returns (1 / time): PULL times as fast as the softest mode of the rod relaxes."""
+    middle = {**model.parameters, "u": model.length / 2}
+    turns = range(model.group.translations, model.group.dimension)
+    soft = min(float(evaluate(model.stiffness[i][i], middle)) for i in turns)
+    return PULL * soft / (float(friction[:, 0, 0].max()) * model.length**4)
+
+
 def _padded(turns: NDArray[np.floating[Any]]) -> Array:
     """Matrices for rotations as matrices for all motions: translations, of which there are 2 or 3, come first."""
     before = 2 if turns.shape[-1] == 1 else 3
@@ -199,7 +220,6 @@ def discretise(scene: Scene, elements: int, degree: int) -> SemiDiscrete:
     structure = structure_of(model)
     mesh = make_mesh(model.length, elements, degree, _steps(scene), joined=model.joined)
     table = mesh.reference
-    uniform, point, node = _sample(structure, model, mesh)
     turn = np.array([_field(e, model.parameters, mesh.u_point) for e in scene.start.strain])
     planar = structure.motion == "planar"
     if planar:
@@ -215,6 +235,8 @@ def discretise(scene: Scene, elements: int, degree: int) -> SemiDiscrete:
         anchor = Poses(
             placed.position[-1], placed.rotation[-1], None if placed.angle is None else np.asarray(placed.angle[-1])
         )
+    placed = march(mesh, turn, anchor.position, anchor.rotation, anchor.angle, structure.base)
+    uniform, point, node = _sample(structure, model, mesh, placed)
     carried = np.zeros(structure.carried)
     if structure.carried == 7:
         carried[3] = 1.0  # the quaternion of no rotation

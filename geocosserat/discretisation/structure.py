@@ -38,21 +38,21 @@ class Coefficient:
 class EndStructure:
     """What a kernel does at one end.
 
-    twist (d): names of its prescribed components, or "0"; None if it is not prescribed as a whole.
-    load (d): components in the moving frame, formulas of coefficients and of what is seen; None if there is none.
+    twist: its prescribed components, all d or, of a pinned end, the translations; formulas of coefficients and of what is
+    seen; empty if none is prescribed. load (d): likewise, components in the moving frame; empty if there is none.
     mobility, friction (d, d): names of entries that only this end needs: of a pinned end the inverse of the friction of
     its rotations, of a driven one the friction, which its drive works against; None elsewhere.
     """
 
     kind: str
-    twist: Row | None = None
-    load: Formulas | None = None
+    twist: Formulas = ()
+    load: Formulas = ()
     mobility: Matrix | None = None
     friction: Matrix | None = None
 
     def describe(self) -> list[object]:
-        load = None if self.load is None else [to_text(e) for e in self.load]
-        return [self.kind, self.twist, load, self.mobility, self.friction]
+        twist, load = ([to_text(e) for e in formulas] for formulas in (self.twist, self.load))
+        return [self.kind, twist, load, self.mobility, self.friction]
 
 
 @dataclass(frozen=True)
@@ -93,7 +93,9 @@ class RodStructure:
     @property
     def sight(self) -> Sight:
         """What of the rod's pose its loads depend on."""
-        formulas = [*self.wrench, *self.medium, *(self.left.load or ()), *(self.right.load or ())]
+        formulas = [*self.wrench, *self.medium]
+        for end in (self.left, self.right):
+            formulas += [*end.twist, *end.load]
         seen = {name.split(".")[0] for e in formulas for name in symbols(e)}
         return "pose" if "place" in seen else "direction" if "frame" in seen else "nothing"
 

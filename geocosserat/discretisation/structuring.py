@@ -1,6 +1,7 @@
 """From a model to the structure of its kernel: everything that varies gets a name and a place."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from geocosserat.algebra.groups import Group
 from geocosserat.discretisation.structure import (
@@ -12,7 +13,6 @@ from geocosserat.discretisation.structure import (
     Matrix,
     Place,
     RodStructure,
-    Row,
 )
 from geocosserat.model.effects.effect import Effect, together
 from geocosserat.model.expressions import (
@@ -27,10 +27,10 @@ from geocosserat.model.expressions import (
     symbols,
 )
 from geocosserat.model.records import End, RodModel
-from geocosserat.model.seen import seen
+from geocosserat.model.seen import cross, nothing, seen
 
-FIRMNESS = ("free", "pinned", "driven", "clamped")
-"""Kinds of end, the later the better poses are marched from it."""
+FIRMNESS = ("free", "pinned", "clamped", "driven")
+"""Kinds of end, the later the better poses are marched from it: a far end that does not move can be held in its place."""
 
 
 class _Names:
@@ -123,9 +123,9 @@ def _mobility(names: _Names, friction: Sequence[Sequence[Expression]]) -> Matrix
     return names.entries("mobility", [[a == b for b in block] for a in block], places)
 
 
-def _load(names: _Names, side: str, end: End, group: Group) -> Formulas | None:
+def _load(names: _Names, side: str, end: End, group: Group) -> Formulas:
     if end.force is None and end.torque is None:
-        return None
+        return ()
     nothing = (Number(0.0),)
     parts = (*(end.force or nothing * group.translations), *(end.torque or nothing * group.rotations))
     named = [
@@ -140,12 +140,12 @@ def _load(names: _Names, side: str, end: End, group: Group) -> Formulas | None:
 def _end(names: _Names, side: str, end: End, model: RodModel) -> EndStructure:
     group = model.group
     d, uniform = group.dimension, ["uniform"] * group.dimension
-    twist: Row | None = (ZERO,) * d if end.kind == "clamped" else None
+    twist: Formulas = nothing({"clamped": d, "pinned": group.translations}.get(end.kind, 0))
     mobility = friction = None
     block = _connected(model.friction)
     if end.kind == "driven" and end.twist is not None:
         twist = tuple(
-            names.add(f"{side}_{name}", e, "uniform") for name, e in zip(group.twist, end.twist, strict=True)
+            names.formula(f"{side}_{name}", e, "uniform") for name, e in zip(group.twist, end.twist, strict=True)
         )
         friction = names.entries(f"{side}_friction", [[a == b for b in block] for a in block], uniform)  # type: ignore[arg-type]
     if end.kind == "pinned":
@@ -153,6 +153,34 @@ def _end(names: _Names, side: str, end: End, model: RodModel) -> EndStructure:
         pattern = [[block[i] == block[j] and i in turns and j in turns for j in range(d)] for i in range(d)]
         mobility = names.entries(f"{side}_mobility", pattern, uniform)  # type: ignore[arg-type]
     return EndStructure(end.kind, twist, _load(names, side, end, group), mobility, friction)
+
+
+def _homing(names: _Names, side: str, end: EndStructure, space: int) -> EndStructure:
+    """The same end, drawn back to its place by as much as it strays from there.
+
+    Where the base of the poses is the other end, nothing but the strains says where this one is, and those carry the error
+    of the scheme. So its twist is not zero but -pull times its distance from home, which is zero but for that error.
+    """
+
+    def home(name: str) -> Expression:
+        names.found[f"{side}_{name}"] = Coefficient(f"{side}_{name}", "uniform")
+        return Symbol(f"{side}_{name}")
+
+    frame, pull = seen(space), home("pull")
+    place = tuple(home(f"home_{axis}") for axis in "xyz"[:space])
+    back = frame.to_body(tuple(there - here for there, here in zip(place, frame.position, strict=True)))
+    twist = tuple(pull * x for x in back)
+    if end.kind == "clamped":
+        if space == 2:
+            (c, _), (s, _) = frame.axes
+            turn: Formulas = (c * home("home_sin") - s * home("home_cos"),)
+        else:
+            axes = [tuple(home(f"home_{i}{axis}") for axis in "xyz") for i in (1, 2, 3)]
+            units = [tuple(Number(float(i == j)) for j in range(3)) for i in range(3)]
+            turns = [cross(unit, frame.to_body(axis)) for unit, axis in zip(units, axes, strict=True)]
+            turn = tuple(0.5 * x for x in together(turns, 3))
+        twist = (*twist, *(pull * x for x in turn))
+    return replace(end, twist=twist)
 
 
 def _named_effects(names: _Names, effects: Sequence[Effect]) -> list[Effect]:
@@ -184,13 +212,17 @@ def structure_of(model: RodModel) -> RodStructure:
     )
     mobility = _mobility(names, model.friction)
     left, right = (_end(names, side, end, model) for side, end in (("left", model.left), ("right", model.right)))
+    base = "left" if FIRMNESS.index(model.left.kind) >= FIRMNESS.index(model.right.kind) else "right"
     held = model.joined or "free" not in (model.left.kind, model.right.kind)
+    if held and base == "left" and right.kind in ("clamped", "pinned"):
+        right = _homing(names, "right", right, group.space)
+    elif held and base == "right" and left.kind in ("clamped", "pinned"):
+        left = _homing(names, "left", left, group.space)
     for stress, frozen_mode in zip(group.stress, frozen, strict=True):
         if held and frozen_mode:
             names.found[f"slack_{stress}"] = Coefficient(f"slack_{stress}", "uniform")
     frame = seen(group.space)
     effects = _named_effects(names, model.effects)
-    base = "left" if FIRMNESS.index(model.left.kind) >= FIRMNESS.index(model.right.kind) else "right"
     return RodStructure(
         motion="planar" if group.translations == 2 else "spatial",
         frozen=frozen,

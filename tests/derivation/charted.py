@@ -1,7 +1,8 @@
-"""Random smooth motions in every chart, with the rotation by another definition than that of the chart."""
+"""Rods, and random smooth motions in every chart, with the rotation by another definition than that of the chart."""
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable
 from functools import lru_cache
 from typing import Any
@@ -14,7 +15,19 @@ from numpy.typing import NDArray
 from geocosserat.algebra.groups import SE2, SE3, Group
 from geocosserat.derivation.charts import chart_names, chart_of, frame
 from geocosserat.derivation.notation import T, U, field, fields
-from tests.derivation.rods import random_motion, smooth
+from geocosserat.model.effects.flow import Flow
+from geocosserat.model.effects.trap import Trap
+from geocosserat.model.records import End
+from tests.derivation.rods import (
+    HEAVY_PLANAR,
+    HEAVY_SPATIAL,
+    PLAIN_PLANAR,
+    PLAIN_SPATIAL,
+    diagonal,
+    random_motion,
+    smooth,
+    vector,
+)
 
 Array = NDArray[Any]
 CASES = [(group, name) for group in (SE2, SE3) for name in chart_names(group)]
@@ -22,6 +35,26 @@ IDS = [name for _, name in CASES]
 SPATIAL = [name for group, name in CASES if group is SE3]
 PRECISE = 60
 SEED = 5
+HEAVY = {SE2: HEAVY_PLANAR, SE3: HEAVY_SPATIAL}
+# frozen modes, a rotation without friction, effects that see place and orientation, a pinned and a driven end
+SWEPT = {
+    SE2: dataclasses.replace(
+        HEAVY_PLANAR,
+        friction=diagonal(1, 2, 0),
+        frozen=("h1",),
+        left=End("pinned", torque=vector("a*t")),
+        right=End("driven", twist=vector(1, "t", "a")),
+        effects=(Trap(vector("a"), vector("t", "b")), Flow(vector(1, "a", 2, -1), vector("t", 1))),
+    ),
+    SE3: dataclasses.replace(
+        HEAVY_SPATIAL,
+        frozen=("h2", "Pi1"),
+        left=End("pinned", torque=vector("a*t", 1, 2), frame="world"),
+        right=End("driven", twist=vector(1, "t", "a", 0, 0, "t")),
+        effects=(Trap(vector("a"), vector("t", "b", 1)), Flow(vector(1, 2, 0, "a", -1, 0, 3, 0, 0), vector("t", 1, 0))),
+    ),
+}
+PLAIN = {SE2: PLAIN_PLANAR, SE3: PLAIN_SPATIAL}
 Point = tuple[sp.Rational, sp.Rational]
 
 

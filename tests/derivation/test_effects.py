@@ -208,6 +208,11 @@ def test_place_and_orientation_follow_the_rod(group: Group) -> None:
             assert abs(along(equation.residual, group, u, t)) < TINY, equation
 
 
+def stands_beside(pair: tuple[str, str]) -> bool:
+    """Whether another effect with a wrench stands beside a weight: then the term of both has no name of its own."""
+    return bool({"follower", "couple", "field", "trap"} & {*pair})
+
+
 @GROUPS
 @pytest.mark.parametrize("pair", list(combinations(KINDS, 2)), ids=" ".join)
 def test_every_pair_of_effects_leaves_no_trace_of_the_others(pair: tuple[str, str], group: Group) -> None:
@@ -228,6 +233,10 @@ def test_every_pair_of_effects_leaves_no_trace_of_the_others(pair: tuple[str, st
         assert ("Orientation" in text) == world
         assert ("Position" in text) == place
         assert ("medium" in text) == ("flow" in pair)
+        assert ("rate of the orientation" in " ".join(text.split())) == world
+        assert ("rate of the position" in " ".join(text.split())) == place
+    assert ("j = -Gamma (V - V_m)" in texts[1]) == ("flow" in pair)
+    assert ("Rᵀ f" in texts[0]) == ("weight" in pair and not stands_beside(pair))
     assert texts[1].isascii()
     assert len(equations.unknowns) == len(equations.closed)
 

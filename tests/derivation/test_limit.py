@@ -24,7 +24,20 @@ from geocosserat.model.errors import InputError
 from geocosserat.model.records import End, RodModel
 from tests.derivation.rods import random_value
 from tests.derivation.scenes import (
-    BASE, FROZEN, FULL, NUMBERS, QUASISTATIC, VALUES, derived, diagonal, limited, number, planar, same, spatial, vector
+    BASE,
+    FROZEN,
+    FULL,
+    NUMBERS,
+    QUASISTATIC,
+    VALUES,
+    derived,
+    diagonal,
+    limited,
+    number,
+    planar,
+    same,
+    spatial,
+    vector,
 )  # fmt: skip
 
 SCENES = pytest.mark.parametrize("name", FROZEN)
@@ -170,6 +183,26 @@ def test_pure_twist_is_diffusion() -> None:
         assert row.left == Pi1.diff(T)
         assert same(row.right, (k3 * (Pi1 - symbol("a") * U)).diff(U, 2) / g3)
         assert {s.equation.left.func.__name__ for s in limits.solved if s.equation.right == 0} >= {"F1", "M3", "v2"}
+
+
+@pytest.mark.parametrize(
+    "right",
+    [End("free", force=vector(0, "a")), End("free", torque=vector("a")), End("driven", twist=vector(0, "a", 0))],
+    ids=["force", "torque", "drive"],
+)
+def test_multipliers_that_an_end_drives_are_kept(right: End) -> None:
+    """A rod that only stretches, loaded or moved across itself: what keeps it straight is not zero."""
+    limits = limit(derive(planar(frozen=("h2", "Pi"), right=right)))
+    assert names(limits) == ("h1", "F2", "M")
+    assert not any(s.origin == "nothing drives it" for s in limits.solved)
+    along = End("free", force=vector("a", 0))
+    assert names(limit(derive(planar(frozen=("h2", "Pi"), right=along)))) == ("h1",)
+
+
+def test_multipliers_that_an_effect_drives_are_kept() -> None:
+    """A couple bends the rod, and what keeps it straight is a moment; without it there is none."""
+    couple = FULL[SE2].effects[2]
+    assert names(limit(derive(planar(frozen=("h2", "Pi"), effects=(couple,))))) == ("h1", "F2", "M")
 
 
 # space, in components: (R a)' = R (a' + Pi x a)
@@ -410,10 +443,8 @@ def test_small_motions_of_the_kirchhoff_rod() -> None:
     assert same(rows["F3"], F3.diff(U, 2) / g2 + Omega2)
 
 
-@SCENES
-def test_small_motions_are_the_slope_of_the_limit_at_rest(name: str) -> None:
-    """The residuals at a distance of 1e-20 from rest, over it, are the linear ones up to 1e-15."""
-    limits = limited(name)
+def is_the_slope(limits: LimitEquations) -> bool:
+    """Whether residuals at a distance of 1e-20 from rest, over it, are the linear ones up to 1e-15."""
     found = small_motion(limits)
     assert found is not None
     size = sp.Rational(1, 10**20)
@@ -424,8 +455,22 @@ def test_small_motions_are_the_slope_of_the_limit_at_rest(name: str) -> None:
     def at(rows: Equations, place: Mapping[sp.Expr, sp.Expr]) -> list[sp.Expr]:
         return [number(put_in(e.residual, place), 9) for e in rows]
 
-    for a, b in zip(at(limits.rows, near), at(found.rows, away), strict=True):
-        assert abs(a / size - b) < sp.Float("1e-15") * (1 + abs(b))
+    pairs = zip(at(limits.rows, near), at(found.rows, away), strict=True)
+    return all(abs(a / size - b) < sp.Float("1e-15") * (1 + abs(b)) for a, b in pairs)
+
+
+@SCENES
+def test_small_motions_are_the_slope_of_the_limit_at_rest(name: str) -> None:
+    """Nothing is left out and nothing added by the expansion."""
+    assert is_the_slope(limited(name))
+
+
+def test_small_motions_where_stretch_and_shear_are_coupled() -> None:
+    """The stretch enters squared then, and its slope is twice the distance."""
+    stiffness = (vector("k1", "a", 0), vector("a", "k2", 0), vector(0, 0, "k3"))
+    limits = limit(derive(planar(frozen=("Pi",), stiffness=stiffness)))
+    assert any(e.right.has(h1**2) for e in limits.rows)
+    assert is_the_slope(limits)
 
 
 @pytest.mark.parametrize(

@@ -2,25 +2,28 @@
 
 Nothing of the package is used but the records of a scene and the element edges. Quadrature comes from exact
 polynomials, brackets from cross products, a planar rod is a spatial one that stays in its plane (so its operators
-are not written twice), rotations in space come from the Gauss collocation in Butcher's form.
+are not written twice), rotations in space come from the Gauss collocation in Butcher's form, places from r' = R h by
+the quadrature of each element, and what effects do is written out once more from their physics.
 
 With half lengths h, Gauss weights w, lumped masses m, and D, B slope and value at the Gauss points:
 
-    A(E) V = D V / h + [E, B V],   G = -A^T (h w S) + end wrenches + m weight,   V = friction^-1 G / m,   dE/dt = A V
+    A(E) V = D V / h + [E, B V]
+    -A^T (h w S) + end loads + m wrench + m drag + what holds the ends = 0,   drag = -friction (V - V of the medium)
+    dE/dt = A V, of frozen modes 0 = A V - d(reference)/dt - slack S
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import mpmath
 import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from geocosserat.model.records import End, RodModel, Scene
+from geocosserat.model.records import RodModel, Scene
 from geocosserat.model.tree import Binary, Call, Expression, Negate, Number, Symbol
 
 Array = NDArray[Any]
@@ -189,29 +192,54 @@ def about_normal(angle: Any) -> Array:
 
 
 def solve(A: Array, b: Array) -> Array:
-    """A x = b, (n, n) and (n, m)."""
-    found = MP.lu_solve(MP.matrix(A.tolist()), MP.matrix(b.tolist()))
-    return np.array([[found[i, j] for j in range(found.cols)] for i in range(found.rows)], dtype=object)
-
-
-def solve_wide(A: Array, b: Array) -> Array:
-    """The same for several right-hand sides."""
-    return np.stack([solve(A, b[:, [k]])[:, 0] for k in range(b.shape[1])], axis=1)
+    """A x = b, (n, n) and (n, m), by elimination of rows."""
+    n = len(A)
+    rows = np.concatenate([A, b], axis=1)
+    for k in range(n):
+        best = k + max(range(n - k), key=lambda i: abs(rows[k + i, k]))
+        rows[[k, best]] = rows[[best, k]]
+        for i in range(k + 1, n):
+            if rows[i, k] != 0:
+                rows[i, k:] = rows[i, k:] - rows[i, k] / rows[k, k] * rows[k, k:]
+    for k in range(n - 1, -1, -1):
+        rows[k, n:] = (rows[k, n:] - rows[k, k + 1 : n] @ rows[k + 1 :, n:]) / rows[k, k]
+    return rows[:, n:]
 
 
 # the rod
 
 
+class Motion(NamedTuple):
+    """A rod at an instant, six components: at the points its turn and stress; at the nodes what the stress makes of it
+    (forces), the loads on its ends, the densities of wrench and drag, the twist of the medium and its own."""
+
+    turn: Array
+    stress: Array
+    force: Array
+    load: Array
+    wrench: Array
+    medium: Array
+    drag: Array
+    twist: Array
+
+
+FIRM = {"free": 0, "pinned": 1, "driven": 2, "clamped": 3}
+
+
 class Rod:
     """The rate of a scene's semi-discrete rod on elements with these edges.
 
-    base: orientation of the end that poses are marched from, an angle or a matrix by rows, as the kernels take it.
+    base: pose of the end that poses are marched from, an angle or a matrix by rows, then a position. slack: by stress,
+    how much a frozen mode yields to it.
     """
 
-    def __init__(self, scene: Scene, edges: Sequence[float], degree: int, base: Array) -> None:
+    def __init__(
+        self, scene: Scene, edges: Sequence[float], degree: int, base: Array, slack: Mapping[str, float] | None = None
+    ) -> None:
         self.model = model = scene.model
         self.table = element(degree)
         self.planar = model.group.rotations == 1
+        self.space = model.group.translations
         self.edges, self.base = numbers(edges), numbers(base)
         self.half = (self.edges[1:] - self.edges[:-1]) / 2
         self.n, self.p, self.d = len(self.half), degree, model.group.dimension
@@ -219,6 +247,7 @@ class Rod:
         self.N = self.Q + 1
         self.kept = np.array([0, 1, 5] if self.planar else range(6))
         """Which of the six components there are."""
+        self.turns = [c for c in self.kept if c >= 3]
         self.parameters = {name: MP.mpf(x) for name, x in model.parameters.items()}
         middles = (self.edges[1:] + self.edges[:-1]) / 2
         self.u_point = np.concatenate([c + h * self.table.points for c, h in zip(middles, self.half, strict=True)])
@@ -226,18 +255,28 @@ class Rod:
             c + h * self.table.nodes * (1 - ASIDE) for c, h in zip(middles, self.half, strict=True)
         ]
         self.mass = self.gather([self.table.masses for _ in range(self.n)])
+        self.frozen = [name in model.frozen for name in model.group.strain]
+        self.slack = numbers([(slack or {}).get(name, 0.0) for name in model.group.stress])
         self.stiffness = [self.matrix(model.stiffness, {"u": u}) for u in self.u_point]
-        self.reference = np.stack([self.vector(model.reference, {"u": u}) for u in self.u_point], axis=1)
         self.friction = self._friction(model)
-        base_kind = "left" if model.left.kind == "clamped" else "right" if model.right.kind == "clamped" else "carried"
-        self.base_kind = base_kind
-        self.carried = 0 if base_kind != "carried" else 3 if self.planar else 7
+        """(N, 6, 6), zero where the plane has no component."""
+        self.ends = () if model.joined else ((0, model.left), (self.N - 1, model.right))
+        self.base_node = 0 if FIRM[model.left.kind] >= FIRM[model.right.kind] else self.N - 1
+        clamped = "clamped" in (model.left.kind, model.right.kind)
+        self.carried = 0 if clamped else 3 if self.planar else 7
+        self._references: dict[Any, Array] = {}
 
     def gather(self, local: Sequence[Array]) -> Array:
         """Sum over elements of half length times a local field on their nodes (last axis)."""
+        return self.added([h * values for h, values in zip(self.half, local, strict=True)])
+
+    def added(self, local: Sequence[Array]) -> Array:
+        """Sum over elements of a local field; the two ends of a ring are one node, listed twice."""
         total = zeros(*local[0].shape[:-1], self.N)
         for e, values in enumerate(local):
-            total[..., e * self.p : e * self.p + self.p + 1] += self.half[e] * values
+            total[..., self.nodes(e)] += values
+        if self.model.joined:
+            total[..., 0] = total[..., -1] = total[..., 0] + total[..., -1]
         return total
 
     def vector(self, entries: Sequence[Expression], names: Mapping[str, Any]) -> Array:
@@ -247,12 +286,17 @@ class Rod:
         return np.stack([self.vector(row, names) for row in rows])
 
     def _friction(self, model: RodModel) -> Array:
-        """(N, d, d): the mean over a node's two sides, by mass."""
+        """The mean over a node's two sides, by mass."""
         local = [
             np.stack([self.matrix(model.friction, {"u": u}) for u in places], axis=-1) * self.table.masses
             for places in self.u_local
         ]
-        return np.moveaxis(self.gather(local) / self.mass, -1, 0)
+        out = zeros(self.N, 6, 6)
+        out[:, self.kept[:, None], self.kept] = np.moveaxis(self.gather(local) / self.mass, -1, 0)
+        for c in self.turns:
+            if not any(out[:, c].ravel()):  # no friction is the limit of one with ever less
+                out[:, c, c] = MP.mpf(1e-10) * self.edges[-1] ** 2 * out[:, 0, 0]
+        return out
 
     def six(self, few: Array) -> Array:
         """All six components, (6, ...), from those there are."""
@@ -260,51 +304,167 @@ class Rod:
         out[self.kept] = few
         return out
 
-    def frames(self, E: Array, pose: Array) -> Array:
-        """Rotation matrices at the nodes, (N, 3, 3)."""
-        if self.planar:
-            gained = [h * (self.table.running @ E[2, self.own(e)]) for e, h in enumerate(self.half)]
-            angle = zeros(self.N)
-            for e in range(self.n):
-                angle[e * self.p : e * self.p + self.p + 1] = angle[e * self.p] + gained[e]
-            angle = angle + self.base[0] + (pose[2] if self.carried else 0)
-            angle = angle - (angle[-1] - self.base[0] if self.base_kind == "right" else 0)
-            return np.stack([about_normal(a) for a in angle])
-        R = np.empty((self.N, 3, 3), dtype=object)
-        R[0] = numbers(np.eye(3))
-        for e, h in enumerate(self.half):
-            R[e * self.p : e * self.p + self.p + 1] = self.collocate(R[e * self.p], h * E[3:, self.own(e)])
-        base = self.base.reshape(3, 3)
-        start = base @ turned(pose[3:]) if self.carried else base @ R[-1].T if self.base_kind == "right" else base
-        return np.stack([start @ Rn for Rn in R])
-
-    def collocate(self, start: Array, bend: Array) -> Array:
-        """Rotations at the nodes of an element: R_q = R_0 + sum a_qj R_j hat(bend_j), and likewise at the nodes."""
-        p, table = self.p, self.table
-        hats = [hat(bend[:, q]) for q in range(p)]
-        # transposed: R_q^T - sum_j a_qj hat_j^T R_j^T = R_0^T
-        system = numbers(np.eye(3 * p))
-        for q, j in np.ndindex(p, p):
-            system[3 * q : 3 * q + 3, 3 * j : 3 * j + 3] -= table.inner[q, j] * hats[j].T
-        stages = solve_wide(system, np.concatenate([start.T] * p))
-        rates = [stages[3 * q : 3 * q + 3].T @ hats[q] for q in range(p)]
-        return np.stack([start + sum(row[q] * rates[q] for q in range(p)) for row in table.running])
-
     def own(self, e: int) -> slice:
         return slice(e * self.p, (e + 1) * self.p)
 
     def nodes(self, e: int) -> slice:
         return slice(e * self.p, e * self.p + self.p + 1)
 
-    def stress(self, E: Array) -> Array:
-        strain = E - self.reference
-        return np.stack([K @ strain[:, q] for q, K in enumerate(self.stiffness)], axis=1)
+    # the state
 
-    def energy(self, y: Array) -> Any:
+    def reference(self, t: Any) -> Array:
+        """(d, Q) the turn at rest."""
+        if t not in self._references:
+            found = [self.vector(self.model.reference, {"u": u, "t": t}) for u in self.u_point]
+            self._references[t] = np.stack(found, axis=1)
+        return self._references[t]
+
+    def reference_rate(self, t: Any) -> Array:
+        """How it changes in time, by differences (to 25 digits)."""
+        step = MP.mpf("1e-13")
+        return (self.reference(t + step) - self.reference(t - step)) / (2 * step)
+
+    def unpack(self, t: Any, y: Array) -> tuple[Array, Array, Array]:
+        """Turn and stress (d, Q), and the carried pose: frozen modes are at their reference, their stress is given."""
+        d, Q = self.d, self.Q
+        given, rest = y[: d * Q].reshape(d, Q), self.reference(t)
+        held = np.array(self.frozen)
+        E = np.where(held[:, None], rest, given)
+        S = np.empty((d, Q), dtype=object)
+        for q, K in enumerate(self.stiffness):
+            for i in range(d):
+                strain = [K[i, j] * (E[j, q] - rest[j, q]) for j in range(d) if not held[j]]
+                S[i, q] = given[i, q] if held[i] else sum(strain)
+        return E, S, y[d * Q : d * Q + self.carried]
+
+    def energy(self, t: float, y: Array) -> Any:
         """Stored energy: the Gauss sum of strain . K strain / 2."""
-        E = y[: self.d * self.Q].reshape(self.d, self.Q)
-        density = ((E - self.reference) * self.stress(E)).sum(axis=0) / 2
+        t = MP.mpf(t)
+        E, S, _ = self.unpack(t, numbers(y))
+        density = ((E - self.reference(t)) * S).sum(axis=0) / 2
+        return self.integral(density)
+
+    def integral(self, density: Array) -> Any:
+        """Of values at the points."""
         return sum(h * (self.table.weights @ density[self.own(e)]) for e, h in enumerate(self.half))
+
+    # poses
+
+    def relative(self, E: Array) -> tuple[Array, Array]:
+        """Rotations (N, 3, 3) and places (N, 3) of the nodes seen from the left end."""
+        E6 = self.six(E)
+        R, r = np.empty((self.N, 3, 3), dtype=object), zeros(self.N, 3)
+        R[0] = numbers(np.eye(3))
+        angle: Any = MP.mpf(0)
+        for e, h in enumerate(self.half):
+            here, first = E6[:, self.own(e)], e * self.p
+            if self.planar:
+                bend = h * here[5]
+                inside = [about_normal(angle + a) for a in self.table.inner @ bend]
+                R[self.nodes(e)] = np.stack([about_normal(angle + a) for a in self.table.running @ bend])
+                angle = angle + self.table.running[-1] @ bend
+            else:
+                inside, R[self.nodes(e)] = self.collocate(R[first], h * here[3:])
+            steps = [h * (inside[q] @ here[:3, q]) for q in range(self.p)]
+            for k, row in enumerate(self.table.running):
+                r[first + k] = r[first] + sum(row[q] * steps[q] for q in range(self.p))
+        return R, r
+
+    def collocate(self, start: Array, bend: Array) -> tuple[list[Array], Array]:
+        """Rotations at the points and at the nodes of an element: R_q = R_0 + sum a_qj R_j hat(bend_j), and likewise at
+        the nodes."""
+        p, table = self.p, self.table
+        hats = [hat(bend[:, q]) for q in range(p)]
+        # transposed: R_q^T - sum_j a_qj hat_j^T R_j^T = R_0^T
+        system = numbers(np.eye(3 * p))
+        for q, j in np.ndindex(p, p):
+            system[3 * q : 3 * q + 3, 3 * j : 3 * j + 3] -= table.inner[q, j] * hats[j].T
+        stages = solve(system, np.concatenate([start.T] * p))
+        inside = [stages[3 * q : 3 * q + 3].T for q in range(p)]
+        rates = [inside[q] @ hats[q] for q in range(p)]
+        return inside, np.stack([start + sum(row[q] * rates[q] for q in range(p)) for row in table.running])
+
+    def poses(self, E: Array, pose: Array) -> tuple[Array, Array]:
+        """Rotations (N, 3, 3) and places (N, 3) of the nodes in the world."""
+        R, r = self.relative(E)
+        base, place = zeros(3, 3), zeros(3)
+        if self.planar:
+            base = about_normal(self.base[0])
+            place[:2] = self.base[1:]
+        else:
+            base, place = self.base[:9].reshape(3, 3), self.base[9:]
+        if self.carried:
+            gone = zeros(3)
+            gone[: self.space] = pose[: self.space]
+            place = place + base @ gone
+            base = base @ (about_normal(pose[2]) if self.planar else turned(pose[3:]))
+        start = base if self.base_node == 0 else base @ R[-1].T
+        first = place if self.base_node == 0 else place - start @ r[-1]
+        return np.stack([start @ Rn for Rn in R]), np.stack([first + start @ rn for rn in r])
+
+    # what acts on it
+
+    def three(self, entries: Array) -> Array:
+        """A vector of the plane, or of space, as three components."""
+        out = zeros(3)
+        out[: len(entries)] = entries
+        return out
+
+    def moment(self, entries: Array) -> Array:
+        """One number about the normal of the plane, or three."""
+        return self.three(entries) if len(entries) > 1 else np.array([MP.mpf(0), MP.mpf(0), entries[0]], dtype=object)
+
+    def acting(self, effect: Any, names: Mapping[str, Any], R: Array, r: Array) -> tuple[Array, Array]:
+        """Density of wrench, and twist of the medium, at a node with that pose."""
+        wrench, medium = zeros(6), zeros(6)
+
+        def read(key: str) -> Array:
+            return self.vector(getattr(effect, key), names)
+
+        match effect.kind:
+            case "weight":
+                wrench[:3] = R.T @ self.three(read("force"))
+            case "follower":
+                wrench[:3] = self.three(read("force"))
+            case "couple":
+                wrench[3:] = self.moment(read("torque"))
+            case "field":
+                wrench[3:] = cross(self.three(read("moment")), R.T @ self.three(read("field")))
+            case "trap":
+                wrench[:3] = R.T @ (read("stiffness")[0] * (self.three(read("centre")) - r))
+            case "flow":
+                G = zeros(3, 3)
+                G[: self.space, : self.space] = read("gradient").reshape(self.space, self.space)
+                vorticity = np.array([G[2, 1] - G[1, 2], G[0, 2] - G[2, 0], G[1, 0] - G[0, 1]], dtype=object)
+                medium[:3] = R.T @ (self.three(read("velocity")) + G @ r)
+                medium[3:] = R.T @ vorticity / 2
+            case kind:
+                raise TypeError(f"expected an effect known here, found {kind}")
+        return wrench, medium
+
+    def surroundings(self, t: Any, E: Array, pose: Array) -> tuple[Array, Array, Array]:
+        """Loads on the ends, density of wrench and twist of the medium, all (6, N) in the moving frame; each side of a
+        node counts with its own mass."""
+        R, r = self.poses(E, pose)
+        load = zeros(6, self.N)
+        wrenches, media = [], []
+        for e, places in enumerate(self.u_local):
+            wrench, medium = zeros(6, self.p + 1), zeros(6, self.p + 1)
+            for k, u in enumerate(places):
+                for effect in self.model.effects:
+                    more = self.acting(effect, {"u": u, "t": t}, R[e * self.p + k], r[e * self.p + k])
+                    wrench[:, k] += more[0]
+                    medium[:, k] += more[1]
+            wrenches.append(wrench * self.table.masses)
+            media.append(medium * self.table.masses)
+        for node, end in self.ends:
+            force = self.three(self.vector(end.force or (), {"t": t}))
+            torque = self.moment(self.vector(end.torque, {"t": t})) if end.torque else zeros(3)
+            turn = R[node].T if end.frame == "world" else numbers(np.eye(3))
+            load[:, node] = np.concatenate([turn @ force, turn @ torque])
+        return load, self.gather(wrenches) / self.mass, self.gather(media) / self.mass
+
+    # the scheme
 
     def strain_rate(self, E: Array, V: Array) -> Array:
         """A(E) V: (6, Q) from (6, N)."""
@@ -316,71 +476,58 @@ class Rod:
 
     def nodal(self, E: Array, S: Array) -> Array:
         """A(E)^T h w S: (6, N) from (6, Q)."""
-        total = zeros(6, self.N)
+        local = []
         for e, h in enumerate(self.half):
             weighted = S[:, self.own(e)] * self.table.weights
-            total[:, self.nodes(e)] += (
-                weighted @ self.table.slopes + h * pulled(E[:, self.own(e)], weighted) @ self.table.values
-            )
-        return total
+            local.append(weighted @ self.table.slopes + h * pulled(E[:, self.own(e)], weighted) @ self.table.values)
+        return self.added(local)
 
-    def wrench(self, end: End, t: Any) -> Array:
-        group = self.model.group
-        force = self.vector(end.force, {"t": t}) if end.force else zeros(group.translations)
-        torque = self.vector(end.torque, {"t": t}) if end.torque else zeros(group.rotations)
-        return self.six(np.concatenate([force, torque]))
-
-    def weight(self, t: Any) -> Array:
-        """(3, N) world force of the weight on the nodes, each side of a node with its own mass."""
-        local = []
-        for places in self.u_local:
-            total = zeros(3, self.p + 1)
-            for effect in self.model.effects:
-                for k, u in enumerate(places):
-                    total[: self.model.group.translations, k] += self.vector(effect.force, {"u": u, "t": t})
-            local.append(total * self.table.masses)
-        return self.gather(local)
-
-    def loads(self, t: Any, E: Array, pose: Array) -> Array:
-        """(6, N) wrenches on the nodes, in the moving frame."""
-        model = self.model
-        total = zeros(6, self.N)
-        world = zeros(6, self.N)
-        for node, end in ((0, model.left), (self.N - 1, model.right)):
-            (world if end.frame == "world" else total)[:, node] += self.wrench(end, t)
-        world[:3] += self.weight(t)
-        if any(x != 0 for x in world.ravel()):
-            for n, R in enumerate(self.frames(E, pose)):
-                total[:3, n] += R.T @ world[:3, n]
-                total[3:, n] += R.T @ world[3:, n]
-        return total
-
-    def move(self, t: float, y: Array) -> tuple[Array, Array, Array]:
-        """Turn (6, Q), applied wrenches (6, N) in the moving frame, and the twist (6, N) they and the stress drive."""
-        y = y if y.dtype == object else numbers(y)
-        d, Q = self.d, self.Q
-        E, pose = y[: d * Q].reshape(d, Q), y[d * Q : d * Q + self.carried]
-        applied = self.loads(MP.mpf(t), E, pose)
-        E6 = self.six(E)
-        drive = ((applied - self.nodal(E6, self.six(self.stress(E)))) / self.mass)[self.kept]
-        V = np.stack([solve(G, drive[:, [n]])[:, 0] for n, G in enumerate(self.friction)], axis=1)
-        for node, end in ((0, self.model.left), (self.N - 1, self.model.right)):
-            if end.kind == "clamped":
-                V[:, node] = 0
-        return E6, applied, self.six(V)
+    def move(self, t: float, y: Array) -> Motion:
+        """How the rod moves, and why."""
+        t, y = MP.mpf(t), y if y.dtype == object else numbers(y)
+        E, S, pose = self.unpack(t, y)
+        E6, S6 = self.six(E), self.six(S)
+        force = -self.nodal(E6, S6)
+        load, wrench, medium = self.surroundings(t, E, pose)
+        drive = (force + load) / self.mass + wrench
+        slip = zeros(6, self.N)
+        held = dict(self.ends)
+        for n, G in enumerate(self.friction):
+            kind = held[n].kind if n in held else "free"
+            if kind == "driven":
+                slip[:, n] = self.six(self.vector(held[n].twist or (), {"t": t})) - medium[:, n]
+                continue
+            moving = {"free": list(self.kept), "pinned": self.turns, "clamped": []}[kind]
+            fixed = [c for c in self.kept if c not in moving]
+            slip[fixed, n] = -medium[fixed, n]  # what stands still is dragged along all the same
+            if moving:
+                rest = drive[moving, n] - G[np.ix_(moving, fixed)] @ slip[fixed, n]
+                slip[moving, n] = solve(G[np.ix_(moving, moving)], rest[:, None])[:, 0]
+        drag = -np.einsum("nij,jn->in", self.friction, slip)
+        return Motion(E6, S6, force, load, wrench, medium, drag, slip + medium)
 
     def rate(self, t: float, y: Array) -> Array:
         """dy/dt with 40 digits, of a state of doubles or of 40-digit numbers, in the layout of the kernels."""
         y = y if y.dtype == object else numbers(y)
-        E, applied, V = self.move(t, y)
-        few, d, Q = V[self.kept], self.d, self.Q
-        lost = sum(self.mass[n] * (few[:, n] @ G @ few[:, n]) for n, G in enumerate(self.friction))
-        gained = (applied * V).sum()
-        moved = self.pose_rate(y[d * Q : d * Q + self.carried], V[:, 0])
-        return np.concatenate([self.strain_rate(E, V)[self.kept].ravel(), moved, np.array([lost, gained])])
+        m, d, Q = self.move(t, y), self.d, self.Q
+        V, moving = m.twist, self.reference_rate(MP.mpf(t))
+        S = m.stress[self.kept]
+        rates = self.strain_rate(m.turn, V)[self.kept]
+        for i in np.flatnonzero(self.frozen):
+            rates[i] = rates[i] - moving[i] - self.slack[i] * S[i]
+        nodes = slice(0, self.N - 1 if self.model.joined else self.N)
+        lost = -(self.mass * m.drag * (V - m.medium)).sum(axis=0)[nodes].sum()
+        worked = (self.mass * (m.wrench * V + m.drag * m.medium) + m.load * V).sum(axis=0)[nodes].sum()
+        for n, end in self.ends:
+            if end.kind != "free":  # whatever holds it does the work that is missing from the balance
+                held = -(m.force + m.load + self.mass * (m.wrench + m.drag))[:, n]
+                worked += held @ V[:, n]
+        worked -= self.integral((moving * S).sum(axis=0))
+        pose = self.pose_rate(y[d * Q : d * Q + self.carried], V[:, self.base_node])
+        return np.concatenate([rates.ravel(), pose, np.array([lost, worked])])
 
     def pose_rate(self, pose: Array, V: Array) -> Array:
-        """How the left end's pose, relative to its start, follows its twist (6,)."""
+        """How the base's pose, relative to its start, follows its twist (6,)."""
         if not self.carried:
             return zeros(0)
         if self.planar:

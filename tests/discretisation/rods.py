@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -88,10 +89,68 @@ def weight(motion: str, *force: str | float) -> dict[str, Any]:
 FREE, CLAMPED = {"kind": "free"}, {"kind": "clamped"}
 
 
+def cut(motion: str, *entries: str | float) -> list[str | float]:
+    """The components of a vector that there are."""
+    return list(entries[: 2 if motion == "planar" else 3])
+
+
+def effects(motion: str) -> dict[str, dict[str, Any]]:
+    """One effect of each kind, by its kind; varying wherever it may."""
+    planar = motion == "planar"
+    gradient = [[0.3, "0.8*cos(t)", 0.1], [-0.2, -0.5, 0.4], [0.3, 0.1, 0.2]]
+    return {
+        "follower": {"kind": "follower", "force": cut(motion, "0.3*sin(u + t)", 0.2, "-u")},
+        "couple": {"kind": "couple", "torque": "0.2*t + u" if planar else [0.1, "0.2*t + u", "cos(u)"]},
+        "field": {
+            "kind": "field",
+            "moment": cut(motion, 0.7, "0.3*u", -0.4),
+            "field": cut(motion, "cos(t)", "sin(t)", 0.5),
+        },
+        "flow": {
+            "kind": "flow",
+            "gradient": [cut(motion, *row) for row in gradient[: len(cut(motion, 0, 0, 0))]],
+            "velocity": cut(motion, 0.1, -0.2, "0.3*t"),
+        },
+        "trap": {"kind": "trap", "stiffness": "1 + u", "centre": cut(motion, 0.2, "0.3*t", -0.1)},
+        "weight": weight(motion, 0.3, "-1 - u", 0.4),
+    }
+
+
+def acting(motion: str, *kinds: str) -> list[dict[str, Any]]:
+    """The effects of these kinds."""
+    return [effects(motion)[kind] for kind in kinds]
+
+
+def driven(motion: str) -> dict[str, Any]:
+    """A driven end that does not move along in one direction."""
+    twist = ["0.3*cos(t)", 0, 0.1, "0.5*t", 0.2, "-sin(t)"]
+    return {"kind": "driven", "twist": [twist[0], twist[1], twist[5]] if motion == "planar" else twist}
+
+
+def pinned(motion: str, frame: str) -> dict[str, Any]:
+    """A pinned end under a torque."""
+    return {"kind": "pinned", "torque": 0.3 if motion == "planar" else [0.1, "0.2*t", -0.3], "frame": frame}
+
+
+def closed(motion: str) -> dict[str, Any]:
+    """A circle that is one at rest too."""
+    bend = 2 * np.pi / LENGTH
+    return {"reference": [1, 0, bend] if motion == "planar" else [1, 0, 0, 0, 0, bend]}
+
+
+ACTIVE = {
+    "planar": ["1 + 0.1*sin(u - t)", 0.1, "2*cos(u + 3*t)"],
+    "spatial": ["1 + 0.1*sin(u - t)", 0.1, "0.2*t", "u", "2*cos(u + 3*t)", -0.5],
+}
+"""References that change in time."""
+STRETCHES = {"planar": ["h1", "h2"], "spatial": ["h1", "h2", "h3"]}
+LENGTH = 1.3
+
+
 def _rod(motion: str, material: Mapping[str, Any], **more: Any) -> dict[str, Any]:
     turned = {"angle": 0.7} if motion == "planar" else {"rotation": [0.3, -0.4, 0.7]}
     place = [0.3, -0.2] if motion == "planar" else [0.3, -0.2, 0.5]
-    values = {"rod": {"motion": motion, "length": 1.3, **material}, "run": {"until": 1.0}}
+    values = {"rod": {"motion": motion, "length": LENGTH, **material}, "run": {"until": 1.0}}
     return values | {"start": turned | {"position": place}} | more
 
 
@@ -135,14 +194,82 @@ def cast(motion: str) -> dict[str, dict[str, Any]]:
             },
             effects=[weight(motion, "double*t*sin(u)", -0.5, "u"), weight(motion, 0.0, "x0*heaviside(t - 0.2)", 0.3)],
         ),
+        "stirred": _rod(
+            motion,
+            {"stiffness": full(motion, "u"), "friction": full(motion, "u**2"), "reference": ACTIVE[motion]},
+            ends={"left": FREE, "right": FREE},
+            effects=list(effects(motion).values()),
+        ),
+        "hinged": _rod(
+            motion,
+            VARYING[motion] | {"friction": full(motion, "u")},
+            ends={"left": FREE, "right": pinned(motion, "world")},
+            effects=acting(motion, "flow", "trap", "couple"),
+        ),
+        "cranked": _rod(
+            motion,
+            VARYING[motion] | {"friction": blocks(motion), "frozen": STRETCHES[motion]},
+            ends={"left": pinned(motion, "body"), "right": driven(motion)},
+            effects=acting(motion, "field", "couple"),
+        ),
+        "shaken": _rod(
+            motion,
+            PLAIN[motion] | {"reference": ACTIVE[motion], "frozen": _bends(motion)},
+            ends={"left": driven(motion), "right": FREE},
+        ),
+        "reeled": _rod(
+            motion,
+            {"stiffness": full(motion), "friction": blocks(motion), "reference": ACTIVE[motion], "frozen": _bends(motion)},
+            ends={"left": load(motion, 0.5, -0.4, 0.3, 0.1, 0.2, 0.3, frame="world"), "right": CLAMPED},
+            effects=acting(motion, "flow", "trap", "weight"),
+        ),
+        "towed": _rod(
+            motion,
+            VARYING[motion] | {"friction": full(motion, "u"), "frozen": ["h1"]},
+            ends={"left": FREE, "right": driven(motion)},
+            effects=acting(motion, "flow"),
+        ),
+        "swept": _rod(
+            motion,
+            {"stiffness": blocks(motion), "friction": full(motion), **curved},
+            ends={"left": pinned(motion, "world"), "right": CLAMPED},
+            effects=acting(motion, "flow", "follower"),
+        ),
+        "hoop": _rod(
+            motion,
+            PLAIN[motion] | closed(motion) | {"stiffness": ["3 + sin(u)", *PLAIN[motion]["stiffness"][1:]]},
+            ends={"joined": True},
+        ),
+        "ring": _rod(
+            motion,
+            PLAIN[motion] | closed(motion) | {"friction": full(motion, "u"), "frozen": STRETCHES[motion]},
+            ends={"joined": True},
+            effects=[
+                *acting(motion, "follower", "flow"),
+                weight(motion, 0.3, "-cos(t)", 0.4),
+                {"kind": "trap", "stiffness": 0.9, "centre": cut(motion, 0.2, "0.3*t", -0.1)},
+            ],
+        ),
     }
+
+
+def _bends(motion: str) -> list[str]:
+    """Modes to freeze of which one is a bend."""
+    return ["h2", "Pi"] if motion == "planar" else ["h2", "Pi1", "Pi3"]
 
 
 CAST = {f"{motion} {name}": values for motion in MOTIONS for name, values in cast(motion).items()}
 NAMES = tuple(CAST)
-_SEEING = ("dead", "hung", "held", "everything")
-WORLD = (*(name for name in NAMES if name.split()[1] in _SEEING), "spatial twisted")
+_PLACED = ("stirred", "hinged", "reeled", "towed", "swept", "ring")
+_SEEING = ("dead", "hung", "held", "everything", *_PLACED)
+WORLD = (
+    *(name for name in NAMES if name.split()[1] in _SEEING), "spatial twisted", "planar cranked", "spatial cranked",
+)  # fmt: skip
 """Rods whose loads see the world."""
+PLACED = tuple(name for name in NAMES if name.split()[1] in _PLACED)
+"""Those that see where they are in it."""
+JOINED = tuple(name for name in NAMES if name.split()[1] in ("hoop", "ring"))
+FROZEN = tuple(name for name in NAMES if name.split()[1] in ("cranked", "shaken", "reeled", "towed", "ring"))
 
 
 def changed(name: str, **tables: Mapping[str, Any]) -> Scene:
@@ -160,7 +287,21 @@ def scene(name: str) -> Scene:
 
 @cache
 def rod(name: str, elements: int, degree: int) -> SemiDiscrete:
-    return discretise(scene(name), elements, degree)
+    return yielding(discretise(scene(name), elements, degree))
+
+
+def yielding(rod: SemiDiscrete) -> SemiDiscrete:
+    """The rod with slacks of order one in place of those just above round-off: no term hides behind another."""
+    names = [c.name for c in rod.structure.at("uniform")]
+    slacks = [0.3 + 0.1 * i if name.startswith("slack_") else x for i, (name, x) in enumerate(zip(names, rod.uniform))]
+    return replace(rod, uniform=np.array(slacks))
+
+
+def slacks(rod: SemiDiscrete) -> dict[str, float]:
+    """How much frozen modes yield, by their stress."""
+    names = [c.name for c in rod.structure.at("uniform")]
+    found = zip(names, rod.uniform, strict=True)
+    return {name.removeprefix("slack_"): float(x) for name, x in found if name.startswith("slack_")}
 
 
 def random_state(rod: SemiDiscrete, seed: int, size: float = 0.4) -> Array:

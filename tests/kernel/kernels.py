@@ -20,7 +20,7 @@ from geocosserat.kernel.load import load
 from geocosserat.kernel.native import NativeRod
 from geocosserat.kernel.pure import NumpyRod
 from tests.discretisation import oracle
-from tests.discretisation.rods import NAMES, SIZES, random_state, rod, scene
+from tests.discretisation.rods import NAMES, SIZES, random_state, rod, scene, slacks
 
 Array = NDArray[np.float64]
 T = 0.37
@@ -86,7 +86,7 @@ def like(case: Case, r: SemiDiscrete) -> NativeRod | NumpyRod:
 def reference(name: str, elements: int, degree: int) -> oracle.Rod:
     """The oracle of a rod on a mesh."""
     r = rod(name, elements, degree)
-    return oracle.Rod(scene(name), r.mesh.edges, degree, r.base)
+    return oracle.Rod(scene(name), r.mesh.edges, degree, r.base, slacks(r))
 
 
 def rate(case: Case, t: float, y: Array) -> Array:
