@@ -66,7 +66,8 @@ def tolerances(rod: SemiDiscrete, rtol: float, atol: float | None, energy: float
     """Absolute tolerance of each state entry, (size,): `atol` for strains, or rtol where none is given.
 
     Strains count by the displacement they make: stretches as they are, curvatures in units of 1 / length, and so
-    for the carried pose; stresses of frozen modes by the energy. The two energies count by the energy stored at the start, or that of bending by a radian.
+    for the carried pose. Energies, and stresses of frozen modes, count by the energy stored at the start, or that of
+    bending by a radian.
     """
     strain = rtol if atol is None else atol
     length, group = float(rod.mesh.edges[-1]), rod.structure.group

@@ -52,8 +52,10 @@ def _tapes(p: Pointwise) -> dict[str, Tape]:
         "tangent": Tape(tangent.steps, named),
         "turn": Tape((), tuple(p.turn.items())),
         "strain_rate": record(p.strain_rate),
-        "velocity": record({name: e for name, e in p.velocity.items() if not name.startswith("slip")},
-                           given={name: e for name, e in p.velocity.items() if name.startswith("slip")}),
+        "velocity": record(
+            {name: e for name, e in p.velocity.items() if not name.startswith("slip")},
+            given={name: e for name, e in p.velocity.items() if name.startswith("slip")},
+        ),
         "energy": record(p.energy, given=p.stress),
         "activity": record(p.activity, given=p.stress),
         "advection": record(p.advection),

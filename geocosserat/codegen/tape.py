@@ -30,7 +30,6 @@ class Tape:
         used = {s for e in [e for _, e in self.steps] + [e for _, e in self.outputs] for s in e.free_symbols}
         return frozenset(s.name for s in used - own)
 
-
     def only(self, names: Iterable[str]) -> "Tape":
         """The same with just the outputs of these names, as far as there are such, and the steps that they need."""
         wanted = set(names)

@@ -151,10 +151,10 @@ def pointwise(structure: RodStructure) -> Pointwise:
     slip = _matrix(structure.mobility) @ drive
     velocity = dict(zip(group.twist, slip, strict=True))
     if structure.dragged:
-        medium = [sp.Integer(0) if e == Number(0.0) else sp.Symbol(f"medium_{i + 1}") for i, e in enumerate(structure.medium)]
-        velocity = {f"slip_{i + 1}": e for i, e in enumerate(slip)} | {
-            name: sp.Symbol(f"slip_{i + 1}") + medium[i] for i, name in enumerate(group.twist)
-        }
+        velocity = {f"slip_{i}": e for i, e in enumerate(slip, start=1)}
+        for i, (name, medium) in enumerate(zip(group.twist, structure.medium, strict=True), start=1):
+            drift = sp.Integer(0) if medium == Number(0.0) else sp.Symbol(f"medium_{i}")
+            velocity[name] = sp.Symbol(f"slip_{i}") + drift
     pose, carry, shift = _pose(group)
     return Pointwise(
         group=group,

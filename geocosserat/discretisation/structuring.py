@@ -30,7 +30,7 @@ from geocosserat.model.records import End, RodModel
 from geocosserat.model.seen import cross, nothing, seen
 
 FIRMNESS = ("free", "pinned", "clamped", "driven")
-"""Kinds of end, the later the better poses are marched from it: a far end that does not move can be held in its place."""
+"""Kinds of end, the later the better to march poses from: the other end, if it does not move, is held in its place."""
 
 
 class _Names:
@@ -128,9 +128,7 @@ def _load(names: _Names, side: str, end: End, group: Group) -> Formulas:
         return ()
     nothing = (Number(0.0),)
     parts = (*(end.force or nothing * group.translations), *(end.torque or nothing * group.rotations))
-    named = [
-        names.formula(f"{side}_{name}", part, "uniform") for name, part in zip(group.wrench, parts, strict=True)
-    ]
+    named = [names.formula(f"{side}_{name}", part, "uniform") for name, part in zip(group.wrench, parts, strict=True)]
     if end.frame == "world":
         frame, force, torque = seen(group.space), named[: group.translations], named[group.translations :]
         named = [*frame.to_body(force), *(frame.to_body(torque) if group.rotations > 1 else torque)]
@@ -158,8 +156,8 @@ def _end(names: _Names, side: str, end: End, model: RodModel) -> EndStructure:
 def _homing(names: _Names, side: str, end: EndStructure, space: int) -> EndStructure:
     """The same end, drawn back to its place by as much as it strays from there.
 
-    Where the base of the poses is the other end, nothing but the strains says where this one is, and those carry the error
-    of the scheme. So its twist is not zero but -pull times its distance from home, which is zero but for that error.
+    Where the base of the poses is the other end, nothing but the strains says where this one is, and those carry the
+    error of the scheme. So its twist is not zero but -pull times its distance from home: zero but for that error.
     """
 
     def home(name: str) -> Expression:

@@ -5,7 +5,7 @@ import numpy as np
 from geocosserat.kernel.contract import Array, Kernel
 
 DENSE = 600
-"""Up to so many of them they are found with dense matrices, of which the least-norm solution is taken."""
+"""Up to so many of them they are found with dense matrices."""
 
 
 def consistent(kernel: Kernel, t: float, y: Array) -> Array:
@@ -15,14 +15,12 @@ def consistent(kernel: Kernel, t: float, y: Array) -> Array:
     if not fixed.size:
         return y
     gap, change = np.empty_like(y), np.empty_like(y)
-    for _ in range(2):  # once, and once more for the rounding of the first
-        kernel.rate(t, y, gap)
-        if fixed.size <= DENSE:
-            J = kernel.jacobian(t, y)[np.ix_(fixed, fixed)]
-            y[fixed] -= np.linalg.lstsq(J, gap[fixed], rcond=1e-13)[0]
-        else:
-            kernel.prepare(t, y)
-            kernel.factor(0.0)  # leaves what moves as it is
-            kernel.solve(gap * kernel.algebraic, change)
-            y[fixed] -= change[fixed]
+    kernel.rate(t, y, gap)
+    if fixed.size <= DENSE:
+        y[fixed] -= np.linalg.solve(kernel.jacobian(t, y)[np.ix_(fixed, fixed)], gap[fixed])
+    else:
+        kernel.prepare(t, y)
+        kernel.factor(0.0)  # leaves what moves as it is
+        kernel.solve(gap * kernel.algebraic, change)
+        y[fixed] -= change[fixed]
     return y

@@ -61,8 +61,8 @@ def integrate(
 
 
 def _chosen(method: str, kernel: Kernel) -> Integrator:
-    """The integrator of that name; SUNDIALS is called directly where the kernel and the installation allow it: CVODE, or
-    IDA where there are constraints."""
+    """The integrator of that name. SUNDIALS is called directly where kernel and installation allow it: CVODE, or IDA
+    where there are constraints."""
     constrained = bool(np.any(kernel.algebraic))
     if method == "cvode" and isinstance(kernel, NativeKernel):
         library = sundials("IDA" if constrained else "CVode")

@@ -63,7 +63,7 @@ class Reduced:
         """See Kernel.jacobian: the constraints' part is eliminated."""
         J = self.kernel.jacobian(t, self.whole(t, x))
         a, b = self.moving, self.fixed
-        inner = np.linalg.lstsq(J[np.ix_(b, b)], J[np.ix_(b, a)], rcond=1e-13)[0]
+        inner = np.linalg.solve(J[np.ix_(b, b)], J[np.ix_(b, a)])
         reduced: Array = J[np.ix_(a, a)] - J[np.ix_(a, b)] @ inner
         return reduced
 
