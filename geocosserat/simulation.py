@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
+from typing import Any
 
 import numpy as np
 
@@ -243,10 +244,34 @@ def solution_of(scene: Scene, attempt: Attempt, estimate: float | None, clock: C
         estimated=estimate,
         evaluations={"rate": trajectory.rates, "jacobian": trajectory.jacobians, "steps": trajectory.steps},
         seconds=clock.seconds,
+        contents=_contents(scene, attempt),
         provenance=_provenance(attempt),
         reached=trajectory.reached and not missed,
         reason=trajectory.reason or ("the accuracy asked for was not reached by refinement" if missed else ""),
     )
+
+
+def _contents(scene: Scene, attempt: Attempt) -> dict[str, Any]:
+    """What the kernel of the scene consists of; whatever the scene does not call for is not in it."""
+    model, structure = scene.model, attempt.rod.structure
+    ends = (("left", model.left), ("right", model.right))
+    loads = [f"load on the {side} end" for side, end in ends if end.force or end.torque]
+    return {
+        "fields": [*structure.state_names, *(["pose of the base"] if structure.carried else [])],
+        "terms": [
+            "elasticity",
+            "friction",
+            *(f"frozen {name}" for name in model.frozen),
+            *(["active reference"] if structure.active else []),
+            *dict.fromkeys(effect.kind for effect in model.effects),
+            *(f"{end.kind} {side} end" for side, end in ends if end.kind != "free"),
+            *loads,
+            *(["joined ends"] if model.joined else []),
+        ],
+        "sees": structure.sight,
+        "arguments": [c.name for c in structure.coefficients if not c.timed],
+        "operations": dict(attempt.text.signature["operations"]),
+    }
 
 
 def _provenance(attempt: Attempt) -> dict[str, str]:

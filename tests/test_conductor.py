@@ -156,7 +156,7 @@ def test_wrong_input_leaves_no_trace(cantilever: Path, tmp_path: Path, wrong: li
 def test_a_solution_that_fits_into_no_memory_is_refused(cantilever: Path, tmp_path: Path) -> None:
     """Before anything is computed, and with nothing left behind."""
     settings = ["run.frames=100000", "run.elements=10000", "run.degree=1"]
-    with pytest.raises(InputError, match="run.frames: expected at most 268435456 numbers.*100000 frames of 30002"):
+    with pytest.raises(InputError, match=r"run.frames: expected at most 268435456 numbers.*100000 frames of 30002"):
         geocosserat.run(cantilever, tmp_path / "out", settings=settings)
     assert list(tmp_path.iterdir()) == []
 

@@ -93,11 +93,9 @@ class Writer:
     def end(self, side: str, end: EndStructure, tapes: dict[str, Tape]) -> dict[str, Any]:
         """What the templates ask of one end."""
         group = self.structure.group
-        turns = range(group.translations + 1, group.dimension + 1)
-        felt = {
-            "pinned": [f"{stem}_{i}" for stem in ("wrench", "medium") for i in turns],
-            "driven": [f"medium_{i + 1}" for i in range(group.dimension)],
-        }.get(end.kind, [])
+        felt = [f"medium_{i + 1}" for i in range(group.dimension)]
+        if end.kind == "pinned":
+            felt += [f"wrench_{i + 1}" for i in range(group.translations, group.dimension)]
         surroundings = tapes["surroundings"].only(felt)
         twist = tapes[f"twist_{side}"]
         mobility, friction = _entries("mobility", end.mobility or ()), _entries("friction", end.friction or ())

@@ -41,7 +41,7 @@ class EndStructure:
     twist: its prescribed components, all d or, of a pinned end, the translations; formulas of coefficients and of what
     is seen; empty if none is prescribed. load (d): likewise, components in the moving frame; empty if there is none.
     mobility, friction (d, d): names of entries that only this end needs: of a pinned end the inverse of the friction of
-    its rotations, of a driven one the friction, which its drive works against; None elsewhere.
+    its rotations; of a driven one, and of any that is held in a medium that moves, the friction; None elsewhere.
     """
 
     kind: str

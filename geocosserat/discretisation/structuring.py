@@ -13,6 +13,7 @@ from geocosserat.discretisation.structure import (
     Matrix,
     Place,
     RodStructure,
+    present,
 )
 from geocosserat.model.effects.effect import Effect, together
 from geocosserat.model.expressions import (
@@ -135,7 +136,7 @@ def _load(names: _Names, side: str, end: End, group: Group) -> Formulas:
     return tuple(named)
 
 
-def _end(names: _Names, side: str, end: End, model: RodModel) -> EndStructure:
+def _end(names: _Names, side: str, end: End, model: RodModel, dragged: bool) -> EndStructure:
     group = model.group
     d, uniform = group.dimension, ["uniform"] * group.dimension
     twist: Formulas = nothing({"clamped": d, "pinned": group.translations}.get(end.kind, 0))
@@ -145,6 +146,7 @@ def _end(names: _Names, side: str, end: End, model: RodModel) -> EndStructure:
         twist = tuple(
             names.formula(f"{side}_{name}", e, "uniform") for name, e in zip(group.twist, end.twist, strict=True)
         )
+    if end.kind == "driven" or (dragged and end.kind != "free"):
         friction = names.entries(f"{side}_friction", [[a == b for b in block] for a in block], uniform)  # type: ignore[arg-type]
     if end.kind == "pinned":
         turns = range(group.translations, d)
@@ -209,7 +211,12 @@ def structure_of(model: RodModel) -> RodStructure:
         for name, e in zip(group.strain, model.reference, strict=True)
     )
     mobility = _mobility(names, model.friction)
-    left, right = (_end(names, side, end, model) for side, end in (("left", model.left), ("right", model.right)))
+    frame = seen(group.space)
+    effects = _named_effects(names, model.effects)
+    wrench = together(((*force, *moment) for force, moment in (e.wrench(frame) for e in effects)), group.dimension)
+    medium = together(((*flow, *spin) for flow, spin in (e.medium(frame) for e in effects)), group.dimension)
+    sides = (("left", model.left), ("right", model.right))
+    left, right = (_end(names, side, end, model, present(medium)) for side, end in sides)
     base = "left" if FIRMNESS.index(model.left.kind) >= FIRMNESS.index(model.right.kind) else "right"
     held = model.joined or "free" not in (model.left.kind, model.right.kind)
     if held and base == "left" and right.kind in ("clamped", "pinned"):
@@ -219,8 +226,6 @@ def structure_of(model: RodModel) -> RodStructure:
     for stress, frozen_mode in zip(group.stress, frozen, strict=True):
         if held and frozen_mode:
             names.found[f"slack_{stress}"] = Coefficient(f"slack_{stress}", "uniform")
-    frame = seen(group.space)
-    effects = _named_effects(names, model.effects)
     return RodStructure(
         motion="planar" if group.translations == 2 else "spatial",
         frozen=frozen,
@@ -231,8 +236,8 @@ def structure_of(model: RodModel) -> RodStructure:
         left=left,
         right=right,
         joined=model.joined,
-        wrench=together(((*force, *moment) for force, moment in (e.wrench(frame) for e in effects)), group.dimension),
-        medium=together(((*flow, *spin) for flow, spin in (e.medium(frame) for e in effects)), group.dimension),
+        wrench=wrench,
+        medium=medium,
         base="left" if base == "left" else "right",
         moving_base=(left if base == "left" else right).kind != "clamped",
         coefficients=tuple(names.found.values()),

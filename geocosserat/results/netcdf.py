@@ -24,8 +24,8 @@ from geocosserat.results.solution import SHAPES, TEXTS, Solution
 if TYPE_CHECKING:
     import xarray
 
-FORMAT = "geocosserat solution 1"
-_DICTIONARIES = ("evaluations", "seconds", "provenance")
+FORMAT = "geocosserat solution 2"
+_DICTIONARIES = ("evaluations", "seconds", "contents", "provenance")
 _INTEGERS = ("elements", "degree", "unknowns", "reached")
 _NUMBERS = ("length", "requested", "estimated")
 

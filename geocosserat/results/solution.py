@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,6 +51,7 @@ class Solution:
     energy, dissipated, work (T,)  force x length: stored, taken by friction so far, done on the rod so far
     requested, estimated  position error at the end relative to the length: asked for, and found; or None
     evaluations       rate, jacobian, steps;   seconds   derive, compile, plan, solve
+    contents          what the kernel consisted of: fields, terms, arguments, operations
     provenance        versions, platform, date, kernel: whatever is needed to do it again
     reached, reason   whether the run came to its end, and if not, why
 
@@ -82,6 +85,7 @@ class Solution:
     estimated: float | None
     evaluations: Mapping[str, int]
     seconds: Mapping[str, float]
+    contents: Mapping[str, Any]
     provenance: Mapping[str, str]
     reached: bool
     reason: str
@@ -95,6 +99,7 @@ class Solution:
             **{name: _writable(getattr(self, name)) for name in TEXTS},
             "evaluations": {key: int(value) for key, value in self.evaluations.items()},
             "seconds": {key: float(value) for key, value in self.seconds.items()},
+            "contents": json.loads(json.dumps(self.contents)),  # plain, and equal to what a file gives back
             "provenance": {str(key): str(value) for key, value in self.provenance.items()},
         }
         for name, value in plain.items():

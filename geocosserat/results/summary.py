@@ -45,6 +45,7 @@ def summary(
         "energy": {"start": float(solution.energy[0]), "end": float(solution.energy[-1])},
         "ledger": asdict(ledger(solution)),
         "error": {"requested": solution.requested, "estimated": solution.estimated},
+        "contents": dict(solution.contents),
         "evaluations": dict(solution.evaluations),
         "seconds": dict(solution.seconds),
         "files": [os.fspath(file) for file in files],

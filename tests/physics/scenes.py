@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 import geocosserat
 from geocosserat.conductor import Run, kernel_text
@@ -19,6 +19,7 @@ from geocosserat.kernel.pure import NumpyRod
 from geocosserat.model.scene import load_scene
 
 Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
 Scene = dict[str, Any]
 EXAMPLES = Path(__file__).parents[2] / "examples"
 NAMES = sorted(path.stem for path in EXAMPLES.glob("*.toml"))
@@ -61,6 +62,30 @@ def semidiscrete(scene: Mapping[str, Any], elements: int, degree: int) -> tuple[
     kernel = load(kernel_text(rod.structure), rod, "numpy")
     assert isinstance(kernel, NumpyRod)
     return rod, kernel
+
+
+def gap(found: ArrayLike, expected: ArrayLike) -> float:
+    """Largest difference of any entry."""
+    return float(np.abs(np.asarray(found) - np.asarray(expected)).max())
+
+
+def growths(scene: Mapping[str, Any], elements: int, degree: int) -> Complex:
+    """Growths (1 / time) of small changes of the rod about its start: the slow ones to most digits.
+
+    Solutions of J x = growth M x, M without the constraints, by inverting J - shift M.
+    """
+    rod, kernel = semidiscrete(scene, elements, degree)
+    size = rod.unknowns
+    moves = 1.0 - rod.algebraic[:size]
+    shift = 0.3 + 0.7j  # no growth of any rod here
+    inverse = np.linalg.solve(kernel.jacobian(0.0, rod.state)[:size, :size] - shift * np.diag(moves), np.diag(moves))
+    found = np.linalg.eigvals(inverse)
+    return np.asarray(shift + 1.0 / found[np.abs(found) > 1e-14 * np.abs(found).max()], dtype=complex)
+
+
+def farthest(wanted: ArrayLike, among: ArrayLike) -> float:
+    """How far, relative to itself, a wanted number is at most from the nearest one among the others."""
+    return max(float(np.abs(np.asarray(among) / x - 1.0).min()) for x in np.asarray(wanted))
 
 
 def straight(

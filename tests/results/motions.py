@@ -97,6 +97,7 @@ def rod(
         "requested": 1e-6, "estimated": 0.1 + 0.2,
         "evaluations": {"rate": 120, "jacobian": 7, "steps": 31},
         "seconds": {"derive": 0.0, "compile": 0.0, "plan": 1 / 3, "solve": 0.012},
+        "contents": {"fields": ["h1"], "operations": {"stress": 3}},
         "provenance": {"geocosserat": "0.1", "kernel": "abc"}, "reached": True, "reason": "",
     }
     return Solution(**(values | changes))

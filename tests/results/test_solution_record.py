@@ -42,7 +42,7 @@ def test_equality_tells_the_zeros_apart_and_takes_nan_for_itself() -> None:
 @pytest.mark.parametrize(
     ("name", "value"),
     [("requested", None), ("estimated", 1e-5), ("reached", False), ("reason", "x"), ("scene", "y"), ("unknowns", 5),
-     ("evaluations", {"rate": 1, "jacobian": 7, "steps": 31}), ("provenance", {})],
+     ("evaluations", {"rate": 1, "jacobian": 7, "steps": 31}), ("contents", {"fields": []}), ("provenance", {})],
 )
 def test_every_other_field_counts_in_the_comparison(name: str, value: object) -> None:
     """A difference outside the arrays is a difference as well."""
@@ -135,5 +135,5 @@ def test_the_record_has_the_agreed_fields() -> None:
     assert [field.name for field in fields(Solution)] == [
         "scene", "title", "motion", "length", "time", "u", "u_point", "position", "rotation", "angle", "twist", "turn",
         "stress", "energy", "dissipated", "work", "method", "elements", "degree", "unknowns", "backend", "requested",
-        "estimated", "evaluations", "seconds", "provenance", "reached", "reason",
+        "estimated", "evaluations", "seconds", "contents", "provenance", "reached", "reason",
     ]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +11,7 @@ import cffi
 import numpy as np
 
 from geocosserat.kernel.contract import Callbacks
-from tests.solver.problems import Array, forced_rates
+from tests.solver.problems import Array, constrained, forced_rates
 
 STRUCT = """
 typedef struct {
@@ -60,18 +61,69 @@ int solve(double t, void *y, void *r, void *b, void *x, double gamma, double tol
     return 0;
 }}
 """
+CONSTRAINED = r"""
+/* The same variables x, which follow not cos t but a z that a constraint makes so: (1 + x^2) (z - cos t) = 0. */
+int residual(double t, void *y, void *yp, void *out, void *data)
+{
+    problem *p = data;
+    const int m = p->size / 2;
+    double *r = p->vector(out), *x = p->vector(y), *slope = p->vector(yp);
+    for (int i = 0; i < m; ++i) {
+        r[i] = slope[i] + p->rates[i] * (x[i] - x[m + i]);
+        r[m + i] = (1.0 + x[i] * x[i]) * (x[m + i] - cos(t));
+    }
+    p->calls += 1;
+    p->latest = fmax(p->latest, t);
+    return t <= p->bad ? 0 : 1;
+}
+int residual_jacobian(double t, double c, void *y, void *yp, void *r, void *J, void *data, void *a1, void *a2, void *a3)
+{
+    problem *p = data;
+    const int n = p->size, m = n / 2;
+    double *columns = p->matrix(J), *x = p->vector(y);
+    for (int i = 0; i < n * n; ++i)
+        columns[i] = 0.0;
+    for (int i = 0; i < m; ++i) {
+        columns[i * n + i] = c + p->rates[i];
+        columns[(m + i) * n + i] = -p->rates[i];
+        columns[i * n + m + i] = 2.0 * x[i] * (x[m + i] - cos(t));
+        columns[(m + i) * n + m + i] = 1.0 + x[i] * x[i];
+    }
+    return 0;
+}
+int residual_setup(double t, void *y, void *yp, void *r, double c, void *data)
+{
+    ((problem *)data)->gamma = c;
+    return 0;
+}
+int residual_solve(double t, void *y, void *yp, void *r, void *b, void *z, double c, double tolerance, void *data)
+{
+    problem *p = data;
+    const int m = p->size / 2;
+    double *x = p->vector(y), *right = p->vector(b), *out = p->vector(z);
+    for (int i = 0; i < m; ++i) {
+        out[m + i] = right[m + i] / (1.0 + x[i] * x[i]);
+        out[i] = (right[i] + p->rates[i] * out[m + i]) / (p->gamma + p->rates[i]);
+    }
+    return 0;
+}
+"""
 DECLARATIONS = f"""
 {STRUCT}int rate(double, void *, void *, void *);
 int jacobian(double, void *, void *, void *, void *, void *, void *, void *);
 int setup(double, void *, void *, int, int *, double, void *);
 int solve(double, void *, void *, void *, void *, double, double, int, void *);
+int residual(double, void *, void *, void *, void *);
+int residual_jacobian(double, double, void *, void *, void *, void *, void *, void *, void *, void *);
+int residual_setup(double, void *, void *, void *, double, void *);
+int residual_solve(double, void *, void *, void *, void *, void *, double, double, void *);
 """
 
 
 def build(compiler: str, folder: Path) -> Path:
     """The compiled library."""
     source, library = folder / "forced.c", folder / "forced.so"
-    source.write_text(SOURCE)
+    source.write_text(SOURCE + CONSTRAINED)
     subprocess.run([compiler, "-O1", "-shared", "-fPIC", str(source), "-o", str(library), "-lm"], check=True)
     return library
 
@@ -102,5 +154,34 @@ class NativeForced:
         functions = (getattr(self._lib, name) for name in ("rate", "jacobian", "setup", "solve"))
         return Callbacks(address(self.problem), *map(address, functions), keep=self)
 
+    @property
+    def algebraic(self) -> Array:
+        return np.zeros(self.size)
+
     def rate(self, t: float, y: Array, out: Array) -> None:
         out[:] = -self._rates * (y - np.cos(t)) if t <= self.problem.bad else np.nan
+
+
+class NativeConstrained(NativeForced):
+    """The same through a constraint (see `problems.constrained`), in C."""
+
+    def __init__(self, library: Path, size: int, bad: float = np.inf) -> None:
+        super().__init__(library, size, bad)
+        self.size = self.problem.size = 2 * size
+        self._python = constrained(size)
+
+    @property
+    def algebraic(self) -> Array:
+        return self._python.algebraic
+
+    def callbacks(self, vector: int, matrix: int, dense: bool) -> Callbacks:
+        names = ("residual", "residual_jacobian", "residual_setup", "residual_solve")
+        found = {name: int(self._ffi.cast("uintptr_t", getattr(self._lib, name))) for name in names}
+        return replace(super().callbacks(vector, matrix, dense), **found)
+
+    def rate(self, t: float, y: Array, out: Array) -> None:
+        self._python.rate(t, y, out)
+        out[:] += 0.0 if t <= self.problem.bad else np.nan
+
+    def jacobian(self, t: float, y: Array) -> Array:
+        return self._python.jacobian(t, y)

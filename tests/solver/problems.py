@@ -24,6 +24,12 @@ class Problem:
     backend: str = "numpy"
     instants: list[float] = field(default_factory=list)
     jacobians: int = 0
+    fixed: int = 0
+    """How many entries, the last ones, are fixed by constraints."""
+
+    @property
+    def algebraic(self) -> Array:
+        return (np.arange(self.size) >= self.size - self.fixed).astype(float)
 
     def rate(self, t: float, y: Array, out: Array) -> None:
         self.instants.append(t)
@@ -38,7 +44,8 @@ class Problem:
         self.linear = self.J(t, y)
 
     def factor(self, gamma: float) -> None:
-        self.inverse = np.linalg.inv(np.eye(self.size) - gamma * self.linear)
+        moves = self.algebraic == 0
+        self.inverse = np.linalg.inv(np.diag(moves.astype(float)) + np.where(moves, -gamma, 1.0)[:, None] * self.linear)
 
     def solve(self, b: Array, out: Array) -> None:
         out[:] = self.inverse @ b
@@ -63,6 +70,21 @@ def forced_solution(size: int, times: Array, start: float = 1.0) -> Array:
         return (rates**2 * np.cos(t) + rates * np.sin(t)) / (rates**2 + 1)
 
     return driven(t) + (start - driven(t[:1])) * np.exp(-rates * (t - t[:1]))
+
+
+def constrained(size: int) -> Problem:
+    """The forced variables x, which follow not cos t but a z that a constraint makes so: (1 + x^2) (z - cos t) = 0."""
+    rates = forced_rates(size)
+
+    def f(t: float, y: Array) -> Array:
+        x, z = np.split(y, 2)
+        return np.concatenate([-rates * (x - z), (1 + x**2) * (z - np.cos(t))])
+
+    def J(t: float, y: Array) -> Array:
+        x, z = np.split(y, 2)
+        return np.block([[np.diag(-rates), np.diag(rates)], [np.diag(2 * x * (z - np.cos(t))), np.diag(1 + x**2)]])
+
+    return Problem(2 * size, f, J, fixed=size)
 
 
 def diffusion(size: int) -> Problem:

@@ -12,6 +12,7 @@ from tests.solver.problems import (
     ROBERTSON_END,
     VAN_DER_POL,
     Array,
+    constrained,
     diffusion,
     diffusion_mode,
     forced,
@@ -35,6 +36,17 @@ def test_variables_that_follow_a_force_are_where_they_should_be(method: str, siz
     np.testing.assert_array_equal(found.times, TIMES)
     np.testing.assert_array_equal(found.states[0], 2.0)
     np.testing.assert_allclose(found.states, forced_solution(size, TIMES, 2.0), atol=1e-6)
+
+
+@pytest.mark.parametrize("size", SIZES)
+@pytest.mark.parametrize("method", METHODS)
+def test_variables_under_constraints_are_where_they_should_be(method: str, size: int) -> None:
+    """The constraints are solved for in every evaluation: what moves is the closed solution, what is fixed is exact."""
+    start = np.concatenate([np.full(size, 2.0), np.full(size, 77.0)])  # what is fixed need not be given
+    found = integrate(constrained(size), start, TIMES, method, 1e-9, 1e-11)
+    assert found.reached
+    np.testing.assert_allclose(found.states[:, :size], forced_solution(size, TIMES, 2.0), atol=1e-6)
+    np.testing.assert_allclose(found.states[:, size:] - np.cos(TIMES)[:, None], 0.0, atol=1e-14)
 
 
 @pytest.mark.parametrize("size", SIZES)

@@ -13,7 +13,7 @@ from geocosserat.solver import integrate as door
 from geocosserat.solver.integrate import integrate
 from geocosserat.solver.settings import DENSE_LIMIT
 from geocosserat.solver.sundials import sundials
-from tests.solver.native_problem import NativeForced, build
+from tests.solver.native_problem import NativeConstrained, NativeForced, build
 from tests.solver.problems import forced, forced_solution
 
 SIZES = (7, DENSE_LIMIT + 10)
@@ -28,7 +28,7 @@ def library(c_compiler: str, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(autouse=True)
 def _needs_sundials() -> None:
-    if sundials() is None:
+    if sundials("CVode") is None or sundials("IDA") is None:
         pytest.skip("the SUNDIALS that came with scikit-sundae cannot be called directly")
 
 
@@ -55,7 +55,7 @@ def test_both_ways_into_cvode_take_the_same_steps(library: Path, size: int) -> N
 
 def test_without_the_library_python_takes_over(library: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Another generation of SUNDIALS is no error: a kernel without Jacobian in Python would be asked for one."""
-    monkeypatch.setattr(door, "sundials", lambda: None)
+    monkeypatch.setattr(door, "sundials", lambda _: None)
     with pytest.raises(AttributeError, match="jacobian"):
         integrate(NativeForced(library, 7), np.ones(7), TIMES)
     assert integrate(forced(7), np.ones(7), TIMES).reached
@@ -79,6 +79,29 @@ def test_a_rate_that_cannot_be_evaluated_at_the_start_is_said_so(library: Path, 
     found = integrate(NativeForced(library, size, bad=-1.0), np.ones(size), TIMES)
     assert "not finite at the start" in found.reason
     assert found.times.tolist() == [0.0]
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_a_compiled_problem_with_constraints_is_integrated_without_python(library: Path, size: int) -> None:
+    """By IDA, dense or with its preconditioner: what moves to the closed solution, what is fixed to its constraint."""
+    problem = NativeConstrained(library, size)
+    start = np.concatenate([np.full(size, 2.0), np.full(size, 77.0)])  # what is fixed need not be given
+    found = integrate(problem, start, TIMES, "cvode", 1e-9, 1e-11)
+    assert found.reached
+    np.testing.assert_allclose(found.states[:, :size], forced_solution(size, TIMES, 2.0), atol=1e-6)
+    np.testing.assert_allclose(found.states[1:, size:] - np.cos(TIMES[1:])[:, None], 0.0, atol=1e-6)
+    assert found.rates == problem.problem.calls
+    assert 0 < found.jacobians < 0.5 * found.steps
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_a_constraint_that_cannot_be_evaluated_ends_the_run_there(library: Path, size: int) -> None:
+    """What was good is kept, and the reason says when."""
+    problem = NativeConstrained(library, size, bad=0.5)
+    found = integrate(problem, np.ones(2 * size), TIMES, "cvode", 1e-8, 1e-10)
+    assert not found.reached
+    assert "IDA stopped at t = 0.5" in found.reason
+    np.testing.assert_array_equal(found.times, TIMES[:4])
 
 
 def test_nothing_after_the_end_is_asked_for(library: Path) -> None:
