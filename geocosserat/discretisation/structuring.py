@@ -130,6 +130,8 @@ def _load(names: _Names, side: str, end: End, group: Group) -> Formulas:
     nothing = (Number(0.0),)
     parts = (*(end.force or nothing * group.translations), *(end.torque or nothing * group.rotations))
     named = [names.formula(f"{side}_{name}", part, "uniform") for name, part in zip(group.wrench, parts, strict=True)]
+    if not present(tuple(named)):
+        return ()
     if end.frame == "world":
         frame, force, torque = seen(group.space), named[: group.translations], named[group.translations :]
         named = [*frame.to_body(force), *(frame.to_body(torque) if group.rotations > 1 else torque)]

@@ -26,8 +26,8 @@ def ida_native(
 ) -> Trajectory:
     """Integrates a NativeKernel with constraints from times[0] through all of `times`; see `integrate`."""
     t = float(times[0])
-    y = consistent(kernel, t, start)
-    with _Ida(library, kernel, y, t, rtol, atol) as session:
+    begun = consistent(kernel, t, start)  # constraints may switch
+    with _Ida(library, kernel, begun, t, rtol, atol) as session:
         return session.integrate(times, progress, frame)
 
 

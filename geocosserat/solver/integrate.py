@@ -8,6 +8,7 @@ from importlib import import_module
 import numpy as np
 
 from geocosserat.kernel.contract import Array, Kernel, NativeKernel
+from geocosserat.solver.consistent import consistent
 from geocosserat.solver.cvode_native import cvode_native
 from geocosserat.solver.ida_native import ida_native
 from geocosserat.solver.pieces import in_pieces
@@ -37,7 +38,7 @@ def integrate(
 
     rtol, and atol for all or for each state entry (in its own unit), bound the local error of a step. A run that
     cannot go on returns what it has, with the reason; it never raises for numerical trouble. switches: instants at
-    which the rate jumps; no step reaches over one.
+    which the rate jumps; no step reaches over one. Entries that constraints fix need no value at the start.
 
     Raises ValueError for an unknown method, or a start that is not finite.
     """
@@ -49,6 +50,10 @@ def integrate(
     kernel.rate(float(times[0]), start, rate)
     if not np.all(np.isfinite(rate)):
         return Trajectory(times[:1].copy(), start[None].copy(), 1, 0, 0, False, "the rate is not finite at the start")
+    try:
+        begun = consistent(kernel, float(times[0]), start)
+    except np.linalg.LinAlgError:
+        return Trajectory(times[:1].copy(), start[None].copy(), 1, 0, 0, False, "the constraints have no solution")
     tolerance = np.broadcast_to(np.asarray(atol, dtype=float), start.shape).copy()
     chosen = _chosen(method, kernel)
 
@@ -57,7 +62,7 @@ def integrate(
 
     with np.errstate(all="ignore"), warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # what goes wrong becomes the reason of the trajectory
-        return in_pieces(piece, start, times, switches, progress, frame)
+        return in_pieces(piece, begun, times, switches, progress, frame)
 
 
 def _chosen(method: str, kernel: Kernel) -> Integrator:
