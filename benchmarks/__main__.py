@@ -5,7 +5,7 @@ import platform
 from importlib.metadata import version
 from pathlib import Path
 
-from benchmarks import bindings, convergence, kernel_cost, linear_solvers, startup
+from benchmarks import bindings, convergence, homing, kernel_cost, linear_solvers, pruning, startup
 from geocosserat.kernel.compile import FLAGS, compiler
 
 LIBRARIES = ("numpy", "scipy", "sympy", "scikit-sundae", "cffi", "matplotlib")
@@ -34,6 +34,8 @@ def _sections() -> list[tuple[str, str, str]]:
         ("Bindings", "bindings", bindings.table()),
         ("Linear solvers", "linear_solvers", linear_solvers.table()),
         ("Whole runs from the shell, in seconds (minimum, median)", "startup", startup.table()),
+        ("What each mode and each effect costs", "pruning", pruning.report()),
+        ("How far a held end strays from its place, relative to the length", "homing", homing.table()),
         ("Error of the tip, relative to the length", "convergence", convergence.tables()),
     ]
 

@@ -57,7 +57,7 @@ def _tapes(p: Pointwise) -> dict[str, Tape]:
             given={name: e for name, e in p.velocity.items() if name.startswith("slip")},
         ),
         "energy": record(p.energy, given=p.stress),
-        "activity": record(p.activity, given=p.stress),
+        "activity": record(p.activity, given=p.stress).only(p.activity),
         "advection": record(p.advection),
         "bracket": record(p.bracket),
         "surroundings": record(p.surroundings, prefix="w"),

@@ -99,6 +99,8 @@ class Writer:
         surroundings = tapes["surroundings"].only(felt)
         twist = tapes[f"twist_{side}"]
         mobility, friction = _entries("mobility", end.mobility or ()), _entries("friction", end.friction or ())
+        space, d = group.translations, group.dimension
+        coupling = friction.only(f"friction_{i + 1}_{j + 1}" for i in range(space, d) for j in range(space))
         return {
             "side": side,
             "index": "0" if side == "left" else "N - 1",
@@ -110,6 +112,7 @@ class Writer:
             "moved": bool(twist.outputs),
             "mobility": self.block(mobility),
             "friction": self.block(friction),
+            "coupling": self.block(coupling),
             "load": self.block(tapes[f"load_{side}"]) if end.load else None,
             "load_tangent": self.block(tapes[f"load_{side}_tangent"]),
         }
@@ -120,7 +123,7 @@ class Writer:
         ends = [self.end("left", s.left, tapes), self.end("right", s.right, tapes)]
         d = group.dimension
         surrounding = {name for name, _ in tapes["surroundings"].outputs}
-        blocks = {name: self.block(tape) for name, tape in tapes.items() if not name.startswith(("load", "twist"))}
+        blocks = {name: self.block(tape) for name, tape in tapes.items() if not name.startswith(("load", "turn", "twist"))}
         turn = self.block(tapes["turn"])
         return {
             **blocks,

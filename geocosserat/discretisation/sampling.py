@@ -13,7 +13,7 @@ from geocosserat.model.expressions import Expression, Number, evaluate
 from geocosserat.model.records import RodModel
 
 SLACK = 1e-12
-"""How much frozen modes yield where both ends are held, relative to what friction lets them: round-off, to be unique."""
+"""How much frozen modes yield where both ends are held, relative to what friction lets them: enough to be unique."""
 
 PULL = 1e5
 """How fast an end that strayed returns home, relative to how fast the rod relaxes."""

@@ -3,24 +3,33 @@
 import numpy as np
 
 from geocosserat.kernel.contract import Array, Kernel
+from geocosserat.solver.settings import DENSE_LIMIT
 
-DENSE = 600
-"""Up to so many of them they are found with dense matrices."""
+SOLVED = 1e-6
+"""Of what constraints were violated by; more is left where a kernel's elimination leaves something out (a ring's seam)."""
 
 
-def consistent(kernel: Kernel, t: float, y: Array) -> Array:
-    """`y` with its algebraic entries such that the constraints hold at t."""
+def consistent(kernel: Kernel, t: float, y: Array, blocks: bool = False) -> Array:
+    """`y` with its algebraic entries such that the constraints hold at t.
+
+    blocks: large systems may use the kernel's elimination, which forgets what it was last prepared and factored for.
+
+    Raises numpy.linalg.LinAlgError if they have no solution.
+    """
     fixed = np.flatnonzero(kernel.algebraic)
     y = y.copy()
     if not fixed.size:
         return y
-    gap, change = np.empty_like(y), np.empty_like(y)
+    gap = np.empty_like(y)
     kernel.rate(t, y, gap)
-    if fixed.size <= DENSE:
-        y[fixed] -= np.linalg.solve(kernel.jacobian(t, y)[np.ix_(fixed, fixed)], gap[fixed])
-    else:
+    if blocks and kernel.size > DENSE_LIMIT:
+        found, left, change = y.copy(), np.empty_like(y), np.empty_like(y)
         kernel.prepare(t, y)
         kernel.factor(0.0)  # leaves what moves as it is
         kernel.solve(gap * kernel.algebraic, change)
-        y[fixed] -= change[fixed]
+        found[fixed] -= change[fixed]
+        kernel.rate(t, found, left)
+        if np.abs(left[fixed]).max() <= SOLVED * np.abs(gap[fixed]).max():
+            return found
+    y[fixed] -= np.linalg.solve(kernel.jacobian(t, y)[np.ix_(fixed, fixed)], gap[fixed])
     return y

@@ -26,7 +26,7 @@ def ida_native(
 ) -> Trajectory:
     """Integrates a NativeKernel with constraints from times[0] through all of `times`; see `integrate`."""
     t = float(times[0])
-    begun = consistent(kernel, t, start)  # constraints may switch
+    begun = consistent(kernel, t, start, blocks=True)  # anew, for constraints may switch
     with _Ida(library, kernel, begun, t, rtol, atol) as session:
         return session.integrate(times, progress, frame)
 

@@ -51,7 +51,7 @@ def integrate(
     if not np.all(np.isfinite(rate)):
         return Trajectory(times[:1].copy(), start[None].copy(), 1, 0, 0, False, "the rate is not finite at the start")
     try:
-        begun = consistent(kernel, float(times[0]), start)
+        begun = consistent(kernel, float(times[0]), start, blocks=True)
     except np.linalg.LinAlgError:
         return Trajectory(times[:1].copy(), start[None].copy(), 1, 0, 0, False, "the constraints have no solution")
     tolerance = np.broadcast_to(np.asarray(atol, dtype=float), start.shape).copy()

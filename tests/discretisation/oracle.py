@@ -211,7 +211,8 @@ def solve(A: Array, b: Array) -> Array:
 
 class Motion(NamedTuple):
     """A rod at an instant, six components: at the points its turn and stress; at the nodes what the stress makes of it
-    (forces), the loads on its ends, the densities of wrench and drag, the twist of the medium and its own."""
+    (forces), the loads on its ends, the densities of wrench and drag, the twist of the medium, that relative to it, and
+    its own."""
 
     turn: Array
     stress: Array
@@ -220,21 +221,24 @@ class Motion(NamedTuple):
     wrench: Array
     medium: Array
     drag: Array
+    slip: Array
     twist: Array
 
 
-FIRM = {"free": 0, "pinned": 1, "driven": 2, "clamped": 3}
+FIRM = ("free", "pinned", "clamped", "driven")
+"""Poses are marched from the end whose kind comes last, the left one if both are alike."""
 
 
 class Rod:
     """The rate of a scene's semi-discrete rod on elements with these edges.
 
-    base: pose of the end that poses are marched from, an angle or a matrix by rows, then a position. slack: by stress,
-    how much a frozen mode yields to it.
+    base: pose of the end that poses are marched from, an angle or a matrix by rows, then a position. given: by name,
+    how much frozen modes yield to their stress (slack_F1, ...), and of a far end that is held, where its place is and
+    how fast it is drawn back there (right_home_x, ..., right_pull).
     """
 
     def __init__(
-        self, scene: Scene, edges: Sequence[float], degree: int, base: Array, slack: Mapping[str, float] | None = None
+        self, scene: Scene, edges: Sequence[float], degree: int, base: Array, given: Mapping[str, float] | None = None
     ) -> None:
         self.model = model = scene.model
         self.table = element(degree)
@@ -256,14 +260,16 @@ class Rod:
         ]
         self.mass = self.gather([self.table.masses for _ in range(self.n)])
         self.frozen = [name in model.frozen for name in model.group.strain]
-        self.slack = numbers([(slack or {}).get(name, 0.0) for name in model.group.stress])
+        self.given = {name: MP.mpf(x) for name, x in (given or {}).items()}
+        self.slack = [self.given.get(f"slack_{name}", MP.mpf(0)) for name in model.group.stress]
         self.stiffness = [self.matrix(model.stiffness, {"u": u}) for u in self.u_point]
         self.friction = self._friction(model)
         """(N, 6, 6), zero where the plane has no component."""
         self.ends = () if model.joined else ((0, model.left), (self.N - 1, model.right))
-        self.base_node = 0 if FIRM[model.left.kind] >= FIRM[model.right.kind] else self.N - 1
-        clamped = "clamped" in (model.left.kind, model.right.kind)
-        self.carried = 0 if clamped else 3 if self.planar else 7
+        firmness = [FIRM.index(end.kind) for end in (model.left, model.right)]
+        self.base_node = 0 if firmness[0] >= firmness[1] else self.N - 1
+        base_kind = FIRM[max(firmness)]
+        self.carried = 0 if base_kind == "clamped" else 3 if self.planar else 7
         self._references: dict[Any, Array] = {}
 
     def gather(self, local: Sequence[Array]) -> Array:
@@ -442,10 +448,9 @@ class Rod:
                 raise TypeError(f"expected an effect known here, found {kind}")
         return wrench, medium
 
-    def surroundings(self, t: Any, E: Array, pose: Array) -> tuple[Array, Array, Array]:
+    def surroundings(self, t: Any, R: Array, r: Array) -> tuple[Array, Array, Array]:
         """Loads on the ends, density of wrench and twist of the medium, all (6, N) in the moving frame; each side of a
         node counts with its own mass."""
-        R, r = self.poses(E, pose)
         load = zeros(6, self.N)
         wrenches, media = [], []
         for e, places in enumerate(self.u_local):
@@ -463,6 +468,23 @@ class Rod:
             turn = R[node].T if end.frame == "world" else numbers(np.eye(3))
             load[:, node] = np.concatenate([turn @ force, turn @ torque])
         return load, self.gather(wrenches) / self.mass, self.gather(media) / self.mass
+
+    def homing(self, node: int, R: Array, r: Array) -> Array:
+        """The twist by which an end that is held far from where poses are marched from goes back to its place, by as
+        much as it strayed: a correction, no motion through the medium."""
+        end, out = dict(self.ends)[node], zeros(6)
+        side = "left" if node == 0 else "right"
+        if node != self.base_node and f"{side}_pull" in self.given:
+            home = {name.removeprefix(f"{side}_home_"): x for name, x in self.given.items()}
+            pull = self.given[f"{side}_pull"]
+            place = self.three(np.array([home[axis] for axis in "xyz"[: self.space]], dtype=object))
+            out[:3] = pull * (R.T @ (place - r))
+            if end.kind == "clamped" and self.planar:
+                out[5] = pull * (R[:, 0] @ about_normal(MP.pi / 2).T @ np.array([home["cos"], home["sin"], 0]))
+            elif end.kind == "clamped":
+                axes = [np.array([home[f"{i}{axis}"] for axis in "xyz"], dtype=object) for i in (1, 2, 3)]
+                out[3:] = pull * R.T @ sum(cross(R[:, i], axes[i]) for i in range(3)) / 2
+        return out
 
     # the scheme
 
@@ -487,24 +509,26 @@ class Rod:
         t, y = MP.mpf(t), y if y.dtype == object else numbers(y)
         E, S, pose = self.unpack(t, y)
         E6, S6 = self.six(E), self.six(S)
+        R, r = self.poses(E, pose)
         force = -self.nodal(E6, S6)
-        load, wrench, medium = self.surroundings(t, E, pose)
+        load, wrench, medium = self.surroundings(t, R, r)
         drive = (force + load) / self.mass + wrench
-        slip = zeros(6, self.N)
+        slip, homing = zeros(6, self.N), zeros(6, self.N)
         held = dict(self.ends)
         for n, G in enumerate(self.friction):
             kind = held[n].kind if n in held else "free"
-            if kind == "driven":
-                slip[:, n] = self.six(self.vector(held[n].twist or (), {"t": t})) - medium[:, n]
-                continue
-            moving = {"free": list(self.kept), "pinned": self.turns, "clamped": []}[kind]
+            moving = {"free": list(self.kept), "pinned": self.turns}.get(kind, [])
             fixed = [c for c in self.kept if c not in moving]
-            slip[fixed, n] = -medium[fixed, n]  # what stands still is dragged along all the same
+            if fixed:  # what stands still is dragged along all the same
+                slip[fixed, n] = -medium[fixed, n]
+                homing[:, n] = self.homing(n, R[n], r[n])
+            if kind == "driven":
+                slip[:, n] += self.six(self.vector(held[n].twist or (), {"t": t}))
             if moving:
                 rest = drive[moving, n] - G[np.ix_(moving, fixed)] @ slip[fixed, n]
                 slip[moving, n] = solve(G[np.ix_(moving, moving)], rest[:, None])[:, 0]
         drag = -np.einsum("nij,jn->in", self.friction, slip)
-        return Motion(E6, S6, force, load, wrench, medium, drag, slip + medium)
+        return Motion(E6, S6, force, load, wrench, medium, drag, slip, slip + medium + homing)
 
     def rate(self, t: float, y: Array) -> Array:
         """dy/dt with 40 digits, of a state of doubles or of 40-digit numbers, in the layout of the kernels."""
@@ -516,12 +540,12 @@ class Rod:
         for i in np.flatnonzero(self.frozen):
             rates[i] = rates[i] - moving[i] - self.slack[i] * S[i]
         nodes = slice(0, self.N - 1 if self.model.joined else self.N)
-        lost = -(self.mass * m.drag * (V - m.medium)).sum(axis=0)[nodes].sum()
+        lost = -(self.mass * m.drag * m.slip).sum(axis=0)[nodes].sum()
         worked = (self.mass * (m.wrench * V + m.drag * m.medium) + m.load * V).sum(axis=0)[nodes].sum()
         for n, end in self.ends:
             if end.kind != "free":  # whatever holds it does the work that is missing from the balance
-                held = -(m.force + m.load + self.mass * (m.wrench + m.drag))[:, n]
-                worked += held @ V[:, n]
+                worked -= (m.force + m.load + self.mass * m.wrench)[:, n] @ V[:, n]
+                worked -= self.mass[n] * m.drag[:, n] @ (m.slip + m.medium)[:, n]
         worked -= self.integral((moving * S).sum(axis=0))
         pose = self.pose_rate(y[d * Q : d * Q + self.carried], V[:, self.base_node])
         return np.concatenate([rates.ravel(), pose, np.array([lost, worked])])

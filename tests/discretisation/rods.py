@@ -143,6 +143,7 @@ ACTIVE = {
     "spatial": ["1 + 0.1*sin(u - t)", 0.1, "0.2*t", "u", "2*cos(u + 3*t)", -0.5],
 }
 """References that change in time."""
+
 STRETCHES = {"planar": ["h1", "h2"], "spatial": ["h1", "h2", "h3"]}
 LENGTH = 1.3
 
@@ -210,7 +211,7 @@ def cast(motion: str) -> dict[str, dict[str, Any]]:
             motion,
             VARYING[motion] | {"friction": blocks(motion), "frozen": STRETCHES[motion]},
             ends={"left": pinned(motion, "body"), "right": driven(motion)},
-            effects=acting(motion, "field", "couple"),
+            effects=acting(motion, "flow", "couple"),
         ),
         "shaken": _rod(
             motion,
@@ -221,18 +222,18 @@ def cast(motion: str) -> dict[str, dict[str, Any]]:
             motion,
             {"stiffness": full(motion), "friction": blocks(motion), "reference": ACTIVE[motion], "frozen": _bends(motion)},
             ends={"left": load(motion, 0.5, -0.4, 0.3, 0.1, 0.2, 0.3, frame="world"), "right": CLAMPED},
-            effects=acting(motion, "flow", "trap", "weight"),
+            effects=acting(motion, "flow", "field", "weight"),
         ),
         "towed": _rod(
             motion,
             VARYING[motion] | {"friction": full(motion, "u"), "frozen": ["h1"]},
             ends={"left": FREE, "right": driven(motion)},
-            effects=acting(motion, "flow"),
+            effects=acting(motion, "field"),
         ),
         "swept": _rod(
             motion,
             {"stiffness": blocks(motion), "friction": full(motion), **curved},
-            ends={"left": pinned(motion, "world"), "right": CLAMPED},
+            ends={"left": CLAMPED, "right": driven(motion)},
             effects=acting(motion, "flow", "follower"),
         ),
         "hoop": _rod(
@@ -260,11 +261,9 @@ def _bends(motion: str) -> list[str]:
 
 CAST = {f"{motion} {name}": values for motion in MOTIONS for name, values in cast(motion).items()}
 NAMES = tuple(CAST)
-_PLACED = ("stirred", "hinged", "reeled", "towed", "swept", "ring")
-_SEEING = ("dead", "hung", "held", "everything", *_PLACED)
-WORLD = (
-    *(name for name in NAMES if name.split()[1] in _SEEING), "spatial twisted", "planar cranked", "spatial cranked",
-)  # fmt: skip
+_PLACED = ("held", "stirred", "hinged", "cranked", "reeled", "swept", "ring")
+_SEEING = ("dead", "hung", "everything", "towed", *_PLACED)
+WORLD = (*(name for name in NAMES if name.split()[1] in _SEEING), "spatial twisted")
 """Rods whose loads see the world."""
 PLACED = tuple(name for name in NAMES if name.split()[1] in _PLACED)
 """Those that see where they are in it."""
@@ -290,18 +289,19 @@ def rod(name: str, elements: int, degree: int) -> SemiDiscrete:
     return yielding(discretise(scene(name), elements, degree))
 
 
-def yielding(rod: SemiDiscrete) -> SemiDiscrete:
-    """The rod with slacks of order one in place of those just above round-off: no term hides behind another."""
+def yielding(rod: SemiDiscrete, pull: float = 0.7) -> SemiDiscrete:
+    """The rod with slacks and pulls of order one, in place of some near round-off and some that are huge: no term hides
+    behind another."""
     names = [c.name for c in rod.structure.at("uniform")]
-    slacks = [0.3 + 0.1 * i if name.startswith("slack_") else x for i, (name, x) in enumerate(zip(names, rod.uniform))]
-    return replace(rod, uniform=np.array(slacks))
+    moderate = {"slack_F1": 0.3, "slack_F2": 0.4, "slack_F3": 0.5, "slack_M1": 0.6, "slack_M2": 0.7, "slack_M3": 0.8}
+    moderate |= {"slack_M": 0.8, "left_pull": pull, "right_pull": pull}
+    return replace(rod, uniform=np.array([moderate.get(name, x) for name, x in zip(names, rod.uniform, strict=True)]))
 
 
-def slacks(rod: SemiDiscrete) -> dict[str, float]:
-    """How much frozen modes yield, by their stress."""
-    names = [c.name for c in rod.structure.at("uniform")]
-    found = zip(names, rod.uniform, strict=True)
-    return {name.removeprefix("slack_"): float(x) for name, x in found if name.startswith("slack_")}
+def given(rod: SemiDiscrete) -> dict[str, float]:
+    """Numbers of the kernel that are not in the scene, by name: slacks, pulls and where held ends belong."""
+    found = zip((c.name for c in rod.structure.at("uniform")), rod.uniform, strict=True)
+    return {name: float(x) for name, x in found if any(mark in name for mark in ("slack_", "_pull", "_home_"))}
 
 
 def random_state(rod: SemiDiscrete, seed: int, size: float = 0.4) -> Array:

@@ -45,13 +45,13 @@ def test_the_pointwise_kernel_is_what_the_field_equations_say(path: Path) -> Non
     # the kernel's inputs, at the same state
     at_point = {**model.parameters, "u": float(PLACE)}
     inputs = {
-        **dict(zip(points.turn, turn, strict=True)),
+        **dict(zip(points.state, turn, strict=True)),
         **{sp.Symbol(f"value_{i + 1}"): v for i, v in enumerate(value)},
         **{sp.Symbol(f"slope_{i + 1}"): s for i, s in enumerate(slope)},
         **{
             sp.Symbol(c.name): sp.Float(evaluate(c.expression, at_point), 30)
             for c in structure_of(model).coefficients
-            if c.expression is not None and c.place in ("uniform", "point")
+            if c.expression is not None and not c.timed and c.place in ("uniform", "point")
         },
     }
     rates = [_numbers(e.right, known) for e in equations.compatibility]

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from geocosserat.discretisation.pointwise import Pointwise, pointwise
 from geocosserat.discretisation.structuring import structure_of
-from tests.discretisation.rods import MOTIONS, NAMES, scene
+from tests.discretisation.rods import FROZEN, MOTIONS, NAMES, scene
 
 Symbols = NDArray[np.object_]
 
@@ -32,6 +32,10 @@ def matrix(named: dict[str, sp.Expr] | object, stem: str, rows: int, columns: in
     return np.array(entries, dtype=object)
 
 
+def turn(p: Pointwise) -> Symbols:
+    return np.array(list(p.turn.values()), dtype=object)
+
+
 def zero(*expressions: Symbols) -> bool:
     """Whether all entries vanish identically."""
     return all(sp.simplify(sp.expand(e)) == 0 for array in expressions for e in np.ravel(array))
@@ -42,7 +46,7 @@ def test_the_strain_rate_is_the_slope_plus_the_bracket_of_turn_and_twist(motion:
     """Compatibility, as matrices: hat(rate) = hat(slope) + [hat(E), hat(W)]."""
     p = expressions(f"{motion} plain")
     group, d = p.group, p.group.dimension
-    E, W, U = np.array(p.turn, dtype=object), symbols("value", d), symbols("slope", d)
+    E, W, U = turn(p), symbols("value", d), symbols("slope", d)
     hatted = group.hat(E) @ group.hat(W) - group.hat(W) @ group.hat(E)
     rate = np.array([p.strain_rate[f"rate_{i + 1}"] for i in range(d)], dtype=object)
     assert zero(group.hat(rate) - group.hat(U) - hatted)
@@ -53,45 +57,73 @@ def test_the_pull_does_on_a_twist_the_work_that_the_stress_does_on_its_bracket(m
     """<pull, W> = <S, [E, W]>: the reason that the scheme can add no work."""
     p = expressions(f"{motion} plain")
     d = p.group.dimension
-    E, W, S = np.array(p.turn, dtype=object), symbols("value", d), np.array([sp.Symbol(n) for n in p.group.stress])
+    E, W, S = turn(p), symbols("value", d), np.array([sp.Symbol(n) for n in p.group.stress])
     pull = np.array([p.pull[f"pull_{i + 1}"] for i in range(d)], dtype=object)
     assert zero(pull @ W - S @ p.group.bracket(E, W))
 
 
-@pytest.mark.parametrize("motion", MOTIONS)
-def test_bracket_and_advection_are_the_two_derivatives_of_the_strain_rate(motion: str) -> None:
-    """With respect to the value of the twist, and to the turn."""
-    p = expressions(f"{motion} plain")
+@pytest.mark.parametrize("name", NAMES)
+def test_bracket_and_advection_are_the_two_derivatives_of_the_strain_rate(name: str) -> None:
+    """With respect to the value of the twist, and to the state."""
+    p = expressions(name)
     d = p.group.dimension
     rates = [p.strain_rate[f"rate_{i + 1}"] for i in range(d)]
     by_value = [[e.diff(x) for x in symbols("value", d)] for e in rates]
-    by_turn = [[e.diff(x) for x in p.turn] for e in rates]
+    by_state = [[e.diff(x) for x in p.state] for e in rates]
     assert zero(matrix(p.bracket, "ad", d, d) - np.array(by_value))
-    assert zero(matrix(p.advection, "advection", d, d) - np.array(by_turn))
+    assert zero(matrix(p.advection, "advection", d, d) - np.array(by_state))
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_the_stress_is_the_derivative_of_the_energy(name: str) -> None:
-    """Hyperelastic, whatever the stiffness and the reference."""
+    """Hyperelastic, whatever the stiffness and the reference; of frozen modes it is no matter of energy but given."""
     p = expressions(name)
+    frozen = structure_of(scene(name).model).frozen
     energy = p.energy["energy"].subs({sp.Symbol(s): e for s, e in p.stress.items()})
-    difference = [energy.diff(x) - e for x, e in zip(p.turn, p.stress.values(), strict=True)]
-    assert zero(np.array(difference))
+    for symbol, stress, held in zip(p.state, p.group.stress, frozen, strict=True):
+        assert held == (stress not in p.stress) == (symbol.name == stress)
+        if not held:
+            assert zero(np.array([energy.diff(symbol) - p.stress[stress]]))
+        else:
+            assert energy.diff(symbol) == 0
+
+
+@pytest.mark.parametrize("name", FROZEN)
+def test_a_frozen_mode_is_its_reference_and_answers_to_no_strain(name: str) -> None:
+    """Its turn is the coefficient of the reference, its stress a state of its own; what must vanish is its strain rate
+    less that of the reference and, where both ends are held, a slack of its stress."""
+    p, structure = expressions(name), structure_of(scene(name).model)
+    d, E, W = p.group.dimension, turn(p), symbols("value", p.group.dimension)
+    rates = symbols("slope", d) + p.group.ad(E) @ W
+    for i in np.flatnonzero(structure.frozen):
+        rest, moving = structure.reference[i], structure.reference_rate[i]
+        assert E[i] == (sp.Integer(int(rest)) if rest in "01" else sp.Symbol(rest))
+        stress = p.group.stress[i]
+        slack = sp.Symbol(f"slack_{stress}") * sp.Symbol(stress) if structure.indeterminate else sp.Integer(0)
+        wanted = rates[i] - (sp.Integer(0) if moving == "0" else sp.Symbol(moving)) - slack
+        assert zero(np.array([p.strain_rate[f"rate_{i + 1}"] - wanted]))
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_the_velocity_is_symmetric_in_its_drive(name: str) -> None:
-    """Onsager: the mobility is a symmetric matrix."""
-    p = expressions(name)
-    drive = symbols("drive", p.group.dimension)
-    mobility = np.array([[e.diff(x) for x in drive] for e in p.velocity.values()])
+def test_the_velocity_relative_to_the_medium_is_symmetric_in_its_drive(name: str) -> None:
+    """Onsager: the mobility is a symmetric matrix; and all of the velocity that is not the medium's."""
+    p, structure = expressions(name), structure_of(scene(name).model)
+    d, drive = p.group.dimension, symbols("drive", p.group.dimension)
+    slips = [p.velocity[f"slip_{i + 1}" if structure.dragged else v] for i, v in enumerate(p.group.twist)]
+    mobility = np.array([[e.diff(x) for x in drive] for e in slips])
     assert zero(mobility - mobility.T)
-    assert zero(np.array([e for e in p.velocity.values()]) - mobility @ drive)
+    assert zero(np.array(slips) - mobility @ drive)
+    assert len(p.velocity) == (2 * d if structure.dragged else d)
+    for i, v in enumerate(p.group.twist) if structure.dragged else ():
+        moving = f"medium_{i + 1}" in p.surroundings
+        medium = sp.Symbol(f"medium_{i + 1}") if moving else sp.Integer(0)
+        assert p.velocity[v] == sp.Symbol(f"slip_{i + 1}") + medium
 
 
 @pytest.mark.parametrize("motion", MOTIONS)
 def test_a_carried_frame_follows_its_twist(motion: str) -> None:
-    """phi_dot = phi V for the matrix of the carried pose, and spin is the rotation that a change of the pose makes."""
+    """phi_dot = phi V for the matrix of the carried pose, and shift is the small motion that a change of the pose makes,
+    rotation first."""
     p = expressions(f"{motion} plain")
     group = p.group
     rng = np.random.default_rng(4)
@@ -121,7 +153,7 @@ def test_a_carried_frame_follows_its_twist(motion: str) -> None:
         return out
 
     assert zero(number(along(rates)) - number(phi) @ group.hat(V))
-    spin = matrix(p.spin, "spin", group.rotations, len(pose))
+    shift = matrix(p.shift, "shift", group.dimension, len(pose))
     for j, unit in enumerate(np.eye(len(pose), dtype=int)):
         turning = group.vee(group.inverse(number(phi)) @ number(along(unit.astype(object))))
-        assert zero(turning[group.translations :] - number(spin[:, j]))
+        assert zero(np.roll(turning, group.rotations) - number(shift[:, j]))

@@ -10,7 +10,21 @@ from geocosserat.algebra.exponential import rotation_from_vector
 from geocosserat.discretisation.semidiscrete import SemiDiscrete, discretise
 from geocosserat.model.scene import load_scene
 from tests.discretisation import oracle
-from tests.discretisation.rods import CAST, CLAMPED, FREE, MOTIONS, NAMES, SIZES, changed, rod, scene, weight
+from tests.discretisation.rods import (
+    CAST,
+    CLAMPED,
+    FREE,
+    FROZEN,
+    LENGTH,
+    MOTIONS,
+    NAMES,
+    SIZES,
+    changed,
+    random_state,
+    rod,
+    scene,
+    weight,
+)
 
 Array = NDArray[np.float64]
 
@@ -27,7 +41,8 @@ def named(rod: SemiDiscrete, name: str) -> Array | float:
 @pytest.mark.parametrize("size", SIZES, ids=str)
 @pytest.mark.parametrize("name", NAMES)
 def test_shapes_are_those_of_the_contract(name: str, size: tuple[int, int]) -> None:
-    """Turn by component, then a carried pose, then two energies; coefficients in the order of the structure."""
+    """Turn by component (of frozen modes the stress), then a carried pose, then two energies; coefficients in the order
+    of the structure; the base's orientation, then its place."""
     r = rod(name, *size)
     d, Q = r.structure.group.dimension, r.mesh.elements * r.mesh.degree
     assert r.state.shape == (d * Q + r.structure.carried + 2,)
@@ -35,7 +50,9 @@ def test_shapes_are_those_of_the_contract(name: str, size: tuple[int, int]) -> N
     assert r.uniform.shape == (len(r.structure.at("uniform")),)
     assert r.point.shape == (len(r.structure.at("point")), Q)
     assert r.node.shape == (len(r.structure.at("node")), Q + 1)
-    assert r.turn(np.stack([r.state] * 3)).shape == (3, d, Q)
+    assert r.base.shape == ((3,) if d == 3 else (12,))
+    assert r.algebraic.shape == r.state.shape
+    assert r.turn(np.stack([r.state] * 3)).shape == r.turn(np.stack([r.state] * 3), np.zeros(3)).shape == (3, d, Q)
     assert all(np.all(np.isfinite(a)) for a in (r.uniform, r.point, r.node, r.tables, r.base, r.state))
 
 
@@ -44,7 +61,8 @@ def test_shapes_are_those_of_the_contract(name: str, size: tuple[int, int]) -> N
 def test_the_mobility_is_the_inverse_of_the_friction(name: str, size: tuple[int, int]) -> None:
     """At every node; where the friction steps, of its mean over both sides by mass."""
     r = rod(name, *size)
-    friction = oracle.floats(oracle.Rod(scene(name), r.mesh.edges, r.mesh.degree, r.base).friction)
+    exact = oracle.Rod(scene(name), r.mesh.edges, r.mesh.degree, r.base)
+    friction = oracle.floats(exact.friction)[:, exact.kept[:, None], exact.kept]
     d = r.structure.group.dimension
     mobility = np.zeros((len(r.mesh.u), d, d))
     for i, j in np.ndindex(d, d):
@@ -53,12 +71,113 @@ def test_the_mobility_is_the_inverse_of_the_friction(name: str, size: tuple[int,
     np.testing.assert_allclose(mobility @ friction, np.broadcast_to(np.eye(d), mobility.shape), rtol=0, atol=1e-12)
 
 
+@pytest.mark.parametrize("name", [name for name in NAMES if name.split()[1] in ("cranked", "hinged", "swept", "reeled")])
+def test_a_held_end_has_the_friction_of_its_node_and_the_inverse_of_that_of_its_rotations(name: str) -> None:
+    """Of the rotations alone, where their translations are held."""
+    r = rod(name, 4, 2)
+    exact = oracle.Rod(scene(name), r.mesh.edges, r.mesh.degree, r.base)
+    friction = oracle.floats(exact.friction)[:, exact.kept[:, None], exact.kept]
+    d, space = r.structure.group.dimension, r.structure.group.translations
+    for end, node in ((r.structure.left, 0), (r.structure.right, -1)):
+        for found, wanted in (
+            (end.friction, friction[node]),
+            (end.mobility, np.pad(np.linalg.inv(friction[node, space:, space:]), ((space, 0), (space, 0)))),
+        ):
+            if found is not None:
+                entries = [[0.0 if e == "0" else named(r, e) for e in row] for row in found]
+                np.testing.assert_allclose(entries, wanted, rtol=0, atol=1e-13)
+    assert d == len(friction[0])
+
+
+@pytest.mark.parametrize("motion", MOTIONS)
+def test_a_rotation_without_friction_has_next_to_none(motion: str) -> None:
+    """1e-10 of what a rod of this length feels, so that the same kernels serve; other entries stay as they are."""
+    friction = [2.0, 3.0, 0] if motion == "planar" else [2.0, 3.0, 3.0, 0.5, 0, 0]
+    r = discretise(changed(f"{motion} plain", rod={"friction": friction}), 3, 2)
+    for i, x in enumerate(friction, start=1):
+        wanted = x or 1e-10 * LENGTH**2 * 2.0
+        assert named(r, f"mobility_{i}_{i}") == pytest.approx(1 / wanted, rel=1e-14)
+
+
+@pytest.mark.parametrize("name", FROZEN)
+def test_a_frozen_mode_yields_next_to_nothing(name: str) -> None:
+    """1e-12 of what friction lets a force move the rod along, or a moment turn it."""
+    r = discretise(scene(name), 4, 2)
+    friction = oracle.floats(oracle.Rod(scene(name), r.mesh.edges, r.mesh.degree, r.base).friction)
+    for stress, held in zip(r.structure.group.stress, r.structure.frozen, strict=True):
+        if held and r.structure.indeterminate:
+            wanted = 1e-12 / (friction[:, 0, 0].max() * LENGTH ** (2 if stress[0] == "F" else 4))
+            assert named(r, f"slack_{stress}") == pytest.approx(wanted, rel=1e-12)
+
+
+@pytest.mark.parametrize("name", FROZEN)
+def test_the_turn_of_a_frozen_mode_is_its_reference_at_its_time(name: str) -> None:
+    """Whatever the state; of the other modes it is what the state holds."""
+    r, times = rod(name, 4, 2), np.array([0.0, 0.4, 1.1])
+    exact = oracle.Rod(scene(name), r.mesh.edges, r.mesh.degree, r.base)
+    states = r.state + np.random.default_rng(2).normal(size=(3, len(r.state)))
+    turn, Q = r.turn(states, times), len(r.mesh.u_point)
+    for k, t in enumerate(times):
+        rest = oracle.floats(exact.reference(oracle.MP.mpf(t)))
+        for i, held in enumerate(r.structure.frozen):
+            wanted = rest[i] if held else states[k, i * Q : (i + 1) * Q]
+            np.testing.assert_allclose(turn[k, i], wanted, rtol=1e-15, atol=1e-15)
+            np.testing.assert_array_equal(r.algebraic[i * Q : (i + 1) * Q], float(held))
+    assert not r.algebraic[len(r.structure.frozen) * Q :].any()
+    together = r.poses(states, times)
+    for k, t in enumerate(times):
+        np.testing.assert_allclose(together.position[k], r.poses(states[k], t).position, rtol=0, atol=1e-14)
+
+
+def test_a_far_end_is_drawn_back_to_where_it_was_much_faster_than_the_rod_relaxes() -> None:
+    """1e5 times as fast as its softest bend does on its whole length."""
+    r = discretise(scene("spatial cranked"), 4, 2)
+    soft, drag = 0.9 + 0.3 * LENGTH / 2, 1.0
+    assert named(r, "left_pull") == pytest.approx(1e5 * soft / (drag * LENGTH**4), rel=1e-12)
+    r = discretise(scene("planar held"), 4, 2)
+    # at the middle, where it steps; friction 3 at most
+    assert named(r, "right_pull") == pytest.approx(1e5 * 1.5 * 1.5 / (3.0 * LENGTH**4), rel=1e-12)
+
+
+HOMED = [name for name in NAMES if name.split()[1] in ("held", "cranked", "swept")]
+
+
+@pytest.mark.parametrize("name", HOMED)
+def test_a_far_end_that_is_held_belongs_where_it_starts(name: str) -> None:
+    """Its place, and of a clamped one its frame."""
+    r = rod(name, 4, 2)
+    side, node, end = ("right", -1, r.structure.right) if r.structure.base == "left" else ("left", 0, r.structure.left)
+    poses = r.poses(r.state)
+    place = [named(r, f"{side}_home_{axis}") for axis in "xyz"[: r.structure.group.translations]]
+    np.testing.assert_allclose(place, poses.position[node], rtol=0, atol=1e-15)
+    if end.kind == "clamped" and poses.angle is not None:
+        frame = [named(r, f"{side}_home_{x}") for x in ("cos", "sin")]
+        np.testing.assert_allclose(frame, poses.rotation[node][:, 0], rtol=0, atol=1e-15)
+    elif end.kind == "clamped":
+        axes = [[named(r, f"{side}_home_{i}{axis}") for i in (1, 2, 3)] for axis in "xyz"]
+        np.testing.assert_allclose(axes, poses.rotation[node], rtol=0, atol=1e-15)
+
+
+@pytest.mark.parametrize("size", SIZES, ids=str)
+@pytest.mark.parametrize("name", NAMES)
+def test_poses_of_any_state_are_those_of_the_exact_march(name: str, size: tuple[int, int]) -> None:
+    """From the base, carried or not, to 40 digits and back: the same collocation, written twice."""
+    r = rod(name, *size)
+    exact, y = oracle.Rod(scene(name), r.mesh.edges, r.mesh.degree, r.base), random_state(r, 31)
+    found = r.poses(y, 0.3)
+    turn, _, pose = exact.unpack(oracle.MP.mpf(0.3), oracle.numbers(y))
+    R, place = (oracle.floats(part) for part in exact.poses(turn, pose))
+    space = exact.space
+    np.testing.assert_allclose(found.rotation, R[:, :space, :space], rtol=0, atol=1e-13)
+    np.testing.assert_allclose(found.position, place[:, :space], rtol=0, atol=1e-13)
+
+
 def test_a_stepped_weight_adds_up_to_the_force_it_is() -> None:
     """Where a coefficient of the nodes steps between unequal elements, each side counts with its own mass."""
     heavy = CAST["planar plain"] | {"effects": [weight("planar", 0.0, "-2*heaviside(u - 0.4)")]}
     r = discretise(load_scene(heavy), 2, 3)
     assert r.mesh.half[0] != pytest.approx(r.mesh.half[1])
-    assert r.mesh.mass @ named(r, "weight_y") == pytest.approx(-2 * (1.3 - 0.4), rel=1e-13)
+    assert r.mesh.mass @ named(r, "weight_force_2") == pytest.approx(-2 * (1.3 - 0.4), rel=1e-13)
 
 
 def test_a_step_in_a_weight_that_changes_in_time_is_sampled_like_any_other() -> None:
@@ -80,6 +199,7 @@ def test_a_uniform_coefficient_is_the_value_of_its_expression() -> None:
     """Parameters at the values of the scene; those of loads in time by their own prefixed names."""
     r = rod("planar everything", 4, 2)
     assert named(r, "p_int") == 0.3
+    assert named(r, "p_double") == 0.4
     assert named(r, "right_f1") == -0.3
     assert named(rod("planar plain", 1, 5), "k_2_2") == 2.0
 

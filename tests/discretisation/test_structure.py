@@ -13,7 +13,27 @@ from geocosserat.discretisation.structure import RodStructure
 from geocosserat.discretisation.structuring import structure_of
 from geocosserat.model.expressions import Number, symbols
 from geocosserat.model.scene import load_scene
-from tests.discretisation.rods import CAST, CLAMPED, FREE, NAMES, WORLD, changed, load, scene, weight
+from tests.discretisation.rods import (
+    CAST,
+    CLAMPED,
+    FREE,
+    FROZEN,
+    JOINED,
+    LENGTH,
+    MOTIONS,
+    NAMES,
+    PLACED,
+    WORLD,
+    acting,
+    changed,
+    driven,
+    effects,
+    load,
+    scene,
+    weight,
+)
+
+PINNED = {"kind": "pinned"}
 
 
 def structure(name: str, **tables: Any) -> RodStructure:
@@ -56,20 +76,25 @@ def test_a_parameter_that_happens_to_be_zero_keeps_its_coefficient() -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_every_coefficient_stands_where_it_varies(name: str) -> None:
-    """Uniform without u and t, time with t; with u entries of the law at points, the weight at nodes."""
+    """Uniform without u; with u entries of the law and the reference at points, values of effects at nodes. With t they
+    are no arguments."""
     found = structure_of(scene(name).model)
+    kinds = tuple(effect.kind for effect in scene(name).model.effects)
+    arguments = {c.name: place for place in ("uniform", "point", "node") for c in found.at(place)}  # type: ignore[arg-type]
     for c in found.coefficients:
         if c.expression is None:
-            assert c.name.startswith("mobility")
-            assert c.place in ("uniform", "node")
+            ends = ("friction", "mobility", "pull", "home")
+            assert c.name.startswith(("mobility", "slack", *(f"{side}_{x}" for side in ("left", "right") for x in ends)))
+            assert c.place in (("uniform", "node") if c.name.startswith("mobility") else ("uniform",))
+            assert arguments[c.name] == c.place
             continue
         used = symbols(c.expression)
-        if "t" in used:
-            assert c.place == "time"
-        elif "u" in used:
-            assert c.place == ("node" if c.name.startswith(("weight", "step")) else "point")
+        if "u" in used:
+            assert c.place == ("node" if c.name.startswith((*kinds, "step")) else "point")
         else:
             assert c.place == "uniform"
+        assert c.timed == ("t" in used)
+        assert (c.name in arguments) != c.timed
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -77,9 +102,8 @@ def test_numbers_are_no_part_of_an_identity(name: str) -> None:
     """Other parameters, lengths, starts and meshes take the same kernel."""
     values = CAST[name]
     parameters = {key: x + 0.01 for key, x in values.get("parameters", {}).items()}
-    other = changed(
-        name, parameters=parameters, rod={"length": 1.7}, start={"position": values["start"]["position"][::-1]}
-    )
+    length = {} if name in JOINED else {"length": 1.7}  # what closes a ring depends on its length
+    other = changed(name, parameters=parameters, rod=length, start={"position": values["start"]["position"][::-1]})
     assert identity(structure_of(other.model)) == identity(structure_of(scene(name).model))
     assert structure_of(other.model).describe() == structure_of(scene(name).model).describe()
 
@@ -110,6 +134,22 @@ OTHERS: dict[str, dict[str, Any]] = {
     "a force in time": {"ends": {"right": load("planar", "t", 0, 0, 0, 0, 0)}},
     "another force in time": {"ends": {"right": load("planar", "2*t", 0, 0, 0, 0, 0)}},
     "a couple": {"ends": {"right": load("planar", 0, 0, 0, 0, 0, 1)}},
+    "a pinned left end": {"ends": {"left": PINNED}},
+    "a pinned right end": {"ends": {"right": PINNED}},
+    "both ends pinned": {"ends": {"left": PINNED, "right": PINNED}},
+    "a free left end, the other pinned": {"ends": {"left": FREE, "right": PINNED}},
+    "a couple on a pinned end": {"ends": {"right": PINNED | {"torque": 1}}},
+    "a driven left end": {"ends": {"left": {"kind": "driven", "twist": [1, 0, 0]}}},
+    "an end driven another way": {"ends": {"left": {"kind": "driven", "twist": [0, 0, 1]}}},
+    "an end driven in time": {"ends": {"left": {"kind": "driven", "twist": ["t", 0, 0]}}},
+    "a driven right end": {"ends": {"left": FREE, "right": {"kind": "driven", "twist": [1, 0, 0]}}},
+    "one frozen mode": {"rod": {"frozen": ["h1"]}},
+    "another frozen mode": {"rod": {"frozen": ["Pi"]}},
+    "two frozen modes": {"rod": {"frozen": ["h1", "h2"]}},
+    "a frozen mode, both ends held": {"rod": {"frozen": ["h1"]}, "ends": {"right": CLAMPED}},
+    "an active curvature": {"rod": {"reference": [1, 0, "t"]}},
+    "another active curvature": {"rod": {"reference": [1, 0, "2*t"]}},
+    "an active stretch": {"rod": {"reference": ["1 + t", 0, 0]}},
 }
 
 
@@ -120,6 +160,10 @@ def test_every_change_of_what_there_is_makes_another_kernel() -> None:
     for what, force in weights.items():
         heavy = CAST["planar plain"] | {"effects": [weight("planar", *force)]}
         found[what] = identity(structure_of(load_scene(heavy).model))
+    for kind, values in effects("planar").items():
+        found[kind] = identity(structure_of(load_scene(CAST["planar plain"] | {"effects": [values]}).model))
+    ring = CAST["planar plain"] | {"ends": {"joined": True}, "start": {"strain": [1, 0, 2 * np.pi / LENGTH]}}
+    found["a ring"] = identity(structure_of(load_scene(ring).model))
     found["plain"], found["spatial"] = identity(structure("planar plain")), identity(structure("spatial plain"))
     assert len(set(found.values())) == len(found)
 
@@ -136,8 +180,23 @@ def test_identity_depends_on_templates_and_version(monkeypatch: pytest.MonkeyPat
 
 @pytest.mark.parametrize("name", NAMES)
 def test_only_loads_fixed_in_the_world_see_the_world(name: str) -> None:
-    """In the plane a couple is the same in both frames, and so needs no orientation."""
-    assert structure_of(scene(name).model).world == (name in WORLD)
+    """In the plane a couple is the same in both frames, and so needs no orientation; only what differs from place to
+    place needs the place."""
+    found = structure_of(scene(name).model)
+    assert found.sight == ("pose" if name in PLACED else "direction" if name in WORLD else "nothing")
+    directions, places = (1, 2) if name.startswith("planar") else (3, 3)
+    assert found.increments == {"nothing": 0, "direction": directions, "pose": directions + places}[found.sight]
+
+
+@pytest.mark.parametrize("motion", MOTIONS)
+def test_every_effect_sees_what_it_must_and_no_more(motion: str) -> None:
+    """On a rod that is held in one place only."""
+    sight = {"follower": "nothing", "couple": "nothing", "field": "direction", "weight": "direction"}
+    for kind, values in effects(motion).items():
+        found = structure_of(load_scene(CAST[f"{motion} plain"] | {"effects": [values]}).model)
+        assert found.sight == sight.get(kind, "pose")
+    still = effects(motion)["flow"] | {"gradient": [[0] * len(row) for row in effects(motion)["flow"]["gradient"]]}
+    assert structure_of(load_scene(CAST[f"{motion} plain"] | {"effects": [still]}).model).sight == "direction"
 
 
 def test_a_planar_dead_torque_is_a_body_torque() -> None:
@@ -148,18 +207,78 @@ def test_a_planar_dead_torque_is_a_body_torque() -> None:
     )
     assert dead == body
     pulled = structure("planar plain", ends={"right": load("planar", 0.1, 0, 0, 0, 0, 1.0, frame="world")})
-    assert pulled.world
+    assert pulled.sight == "direction"
 
 
-def test_poses_are_marched_from_a_held_end_or_else_carried() -> None:
-    """The left one if both are held; a rod held nowhere carries position and angle, or position and quaternion."""
-    ends = {"left": (CLAMPED, FREE), "right": (FREE, CLAMPED), "carried": (FREE, FREE)}
-    for motion, carried in (("planar", 3), ("spatial", 7)):
-        for base, (left, right) in ends.items():
-            found = structure(f"{motion} plain", ends={"left": left, "right": right})
-            assert (found.base, found.carried) == (base, carried if base == "carried" else 0)
-        both = structure(f"{motion} plain", ends={"left": CLAMPED, "right": CLAMPED})
-        assert (both.base, both.held) == ("left", (True, True))
+@pytest.mark.parametrize("motion", MOTIONS)
+def test_poses_are_marched_from_the_end_that_is_held_best(motion: str) -> None:
+    """A driven one before a clamped one before a pinned one before a free one, the left one if both are alike: what a
+    held end far from there is drawn back to is its place, and a driven end has none. Unless the base is clamped, its pose
+    is carried: position and angle, or position and quaternion."""
+    ends = {"driven": driven(motion), "clamped": CLAMPED, "pinned": PINNED, "free": FREE}
+    order = list(ends)
+    for left in ends:
+        for right in ends:
+            found = structure(f"{motion} plain", ends={"left": ends[left], "right": ends[right]})
+            assert found.base == ("left" if order.index(left) <= order.index(right) else "right")
+            best = left if found.base == "left" else right
+            assert found.carried == (0 if best == "clamped" else 3 if motion == "planar" else 7)
+            far, side = (found.right, "right") if found.base == "left" else (found.left, "left")
+            homed = far.kind in ("clamped", "pinned")
+            assert {c.name for c in found.coefficients if c.name.startswith((f"{side}_pull", f"{side}_home"))} == (
+                homes(motion, side, far.kind) if homed else set()
+            )
+            assert (found.sight == "pose") == homed
+
+
+def homes(motion: str, side: str, kind: str) -> set[str]:
+    """Names of what says where an end belongs."""
+    axes = "xy" if motion == "planar" else "xyz"
+    frame = ("cos", "sin") if motion == "planar" else tuple(f"{i}{axis}" for i in (1, 2, 3) for axis in axes)
+    return {f"{side}_pull", *(f"{side}_home_{x}" for x in (*axes, *(frame if kind == "clamped" else ())))}
+
+
+@pytest.mark.parametrize("motion", MOTIONS)
+def test_a_held_end_needs_the_friction_only_where_its_drag_is_felt(motion: str) -> None:
+    """A driven one always, the others in a medium that moves; all but a free one, which has that of every node."""
+    ends = {"driven": driven(motion), "clamped": CLAMPED, "pinned": PINNED, "free": FREE}
+    for kind, end in ends.items():
+        for effect in ("flow", "trap"):
+            values = CAST[f"{motion} plain"] | {"ends": {"left": end}, "effects": acting(motion, effect)}
+            found = structure_of(load_scene(values).model)
+            felt = kind == "driven" or (effect == "flow" and kind != "free")
+            assert (found.left.friction is not None) == felt
+            assert any(name.startswith("left_friction") for name in names(found)) == felt
+            assert (found.left.mobility is not None) == (kind == "pinned")
+
+
+def test_frozen_modes_leave_no_stiffness() -> None:
+    """Neither their own entry nor what couples them to others; their reference stays."""
+    K = [[3.0, 0.1, 0.2], [0.1, 2.0, 0.3], [0.2, 0.3, 1.5]]
+    found = structure("planar plain", rod={"stiffness": K, "frozen": ["h2"], "reference": [1, 0.1, 0.2]})
+    assert {name for name in names(found) if name.startswith("k_")} == {"k_1_1", "k_1_3", "k_3_3"}
+    assert found.stiffness[1] == ("0", "0", "0")
+    assert found.state_names == ("h1", "F2", "Pi")
+    assert {"rest_h2", "rest_Pi"} <= names(found)
+
+
+@pytest.mark.parametrize("name", FROZEN)
+def test_frozen_modes_yield_only_where_both_ends_are_held(name: str) -> None:
+    """One slack for each, where a stress might have no unique value."""
+    found = structure_of(scene(name).model)
+    held = name in JOINED or "free" not in (scene(name).model.left.kind, scene(name).model.right.kind)
+    stresses = {s for s, frozen in zip(found.group.stress, found.frozen, strict=True) if frozen}
+    assert {c for c in names(found) if c.startswith("slack")} == ({f"slack_{s}" for s in stresses} if held else set())
+    assert found.indeterminate == held
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_only_a_reference_that_changes_has_a_rate(name: str) -> None:
+    """And just those of its components that do."""
+    found = structure_of(scene(name).model)
+    for mode, e in zip(found.group.strain, scene(name).model.reference, strict=True):
+        assert (f"rate_{mode}" in names(found)) == ("t" in symbols(e))
+    assert found.active == any("t" in symbols(e) for e in scene(name).model.reference)
 
 
 def test_the_mobility_couples_what_the_friction_couples_directly_or_through_others() -> None:
@@ -187,17 +306,9 @@ def test_the_mobility_is_zero_exactly_where_the_inverse_of_the_friction_is(seed:
 def test_names_of_parameters_cannot_meet_names_of_the_kernel() -> None:
     """Those that enter a kernel are prefixed, each once."""
     found = structure("planar everything")
-    times = found.at("time")
-    assert times
-    for c in times:
+    assert found.timed
+    for c in found.timed:
         assert c.expression is not None
         assert all(name in ("t", "u") or name.startswith("p_") for name in symbols(c.expression))
     listed = [c.name for c in found.coefficients]
     assert len(set(listed)) == len(listed)
-
-
-def test_an_effect_that_is_not_known_is_refused() -> None:
-    """Nothing is silently left out."""
-    model = replace(scene("planar plain").model, effects=("magic",))  # type: ignore[arg-type]
-    with pytest.raises(TypeError, match="expected effects of kind weight, found str"):
-        structure_of(model)

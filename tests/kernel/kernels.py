@@ -20,7 +20,7 @@ from geocosserat.kernel.load import load
 from geocosserat.kernel.native import NativeRod
 from geocosserat.kernel.pure import NumpyRod
 from tests.discretisation import oracle
-from tests.discretisation.rods import NAMES, SIZES, random_state, rod, scene, slacks
+from tests.discretisation.rods import JOINED, NAMES, SIZES, given, random_state, rod, scene
 
 Array = NDArray[np.float64]
 T = 0.37
@@ -41,7 +41,7 @@ class Case(NamedTuple):
 
 def cases(backends: Iterable[str] = ("numpy", "c"), names: Iterable[str] = NAMES) -> list[Case]:
     """Every rod on every mesh in numpy; in C every rod on one, those with most in them on all, and some at degree 8."""
-    most = {"everything": (*SIZES, (2, 8)), "hung": SIZES}
+    most = {"everything": SIZES, "stirred": (*SIZES, (2, 8)), "ring": SIZES, "reeled": SIZES[1:]}
     numpy = [Case(name, *size, "numpy") for name in names for size in SIZES]
     c = [Case(name, *size, "c") for name in names for size in most.get(name.split()[1], SIZES[1:2])]
     return [*(numpy if "numpy" in backends else []), *(c if "c" in backends else [])]
@@ -86,7 +86,7 @@ def like(case: Case, r: SemiDiscrete) -> NativeRod | NumpyRod:
 def reference(name: str, elements: int, degree: int) -> oracle.Rod:
     """The oracle of a rod on a mesh."""
     r = rod(name, elements, degree)
-    return oracle.Rod(scene(name), r.mesh.edges, degree, r.base, slacks(r))
+    return oracle.Rod(scene(name), r.mesh.edges, degree, r.base, given(r))
 
 
 def rate(case: Case, t: float, y: Array) -> Array:
@@ -112,3 +112,44 @@ def reference_derivative(name: str, elements: int, degree: int, seed: int) -> tu
     y = random_state(rod(name, elements, degree), seed)
     direction = np.random.default_rng(100 + seed).normal(size=len(y))
     return direction, oracle.floats(reference(name, elements, degree).derivative(T, y, direction))
+
+
+def turns(case: Case) -> int:
+    """How many state entries are turns at points, or stresses of frozen modes."""
+    r = rod(*case[:3])
+    return r.structure.group.dimension * len(r.mesh.u_point)
+
+
+def whole(blocks: tuple[Array, Array, Array], joined: bool) -> Array:
+    """The block-tridiagonal matrix of (lower, diagonal, upper); of a ring, with the two blocks that join its ends."""
+    n, b = blocks[1].shape[:2]
+    matrix = np.zeros((n, b, n, b))
+    for shift, entries in zip((-1, 0, 1), blocks, strict=True):
+        for e in range(n):
+            if 0 <= e + shift < n or (joined and n > 1):
+                matrix[e, :, (e + shift) % n] += entries[e]
+    return matrix.reshape(n * b, n * b)
+
+
+def eliminated(case: Case, blocks: tuple[Array, Array, Array]) -> Array:
+    """The derivatives of the rates of turns that blocks stand for, in the order of the state; poses of the elements'
+    left ends, which have rows of their own, follow from the turns."""
+    n, b = blocks[1].shape[:2]
+    p, d = case.degree, turns(case) // (n * case.degree)
+    matrix = whole(blocks, case.name in JOINED)
+    place = np.arange(n * b).reshape(n, b)
+    own, poses = place[:, : p * d], place[:, p * d :].ravel()
+    order = own.reshape(n, p, d).transpose(2, 0, 1).ravel()
+    follow = np.linalg.solve(matrix[np.ix_(poses, poses)], matrix[np.ix_(poses, order)])
+    return matrix[np.ix_(order, order)] - matrix[np.ix_(order, poses)] @ follow
+
+
+def implicit(case: Case, J: Array, gamma: float) -> Array:
+    """mask - gamma J, what the block solve is the inverse of: rows of frozen modes are those of J, entries behind the
+    turn are left as they are."""
+    matrix, m = np.eye(len(J)), turns(case)
+    matrix[:m, :m] -= gamma * J[:m, :m]
+    held = np.flatnonzero(rod(*case[:3]).algebraic)
+    matrix[held] = 0
+    matrix[held, :m] = J[held, :m]
+    return matrix

@@ -13,12 +13,14 @@ from geocosserat.algebra.exponential import rotation_from_vector, vector_from_ro
 from geocosserat.algebra.groups import SE3
 from geocosserat.discretisation.pose import plane_rotation
 from geocosserat.discretisation.semidiscrete import SemiDiscrete
-from geocosserat.model.effects.weight import Weight
+from geocosserat.model.effects.effect import Effect
 from geocosserat.model.expressions import Binary, Expression, Negate, Number, Symbol, constant, substitute
 from geocosserat.model.records import End, RodModel, Scene, Start
 
 Array = NDArray[np.float64]
 Vector = tuple[Expression, ...]
+BODY = {"follower": ("force",), "couple": ("torque",), "field": ("moment",)}
+"""Values of effects that are vectors in the moving frame; all others are in the world."""
 
 
 def signs(planar: bool) -> tuple[Array, Array]:
@@ -53,12 +55,22 @@ def reversed_scene(scene: Scene, rod: SemiDiscrete, state: Array) -> Scene:
     def matrix(rows: Sequence[Sequence[Expression]], by: Array) -> tuple[Vector, ...]:
         return tuple(vector(row, s * by) for s, row in zip(by, rows, strict=True))
 
+    d = model.group.translations
+
     def end(e: End) -> End:
+        if e.twist is not None:
+            return replace(e, twist=vector(e.twist, twist))
         if e.frame == "world":
             return e
-        d = model.group.translations
         force = None if e.force is None else vector(e.force, twist[:d])
         return replace(e, force=force, torque=None if e.torque is None else vector(e.torque, twist[d:]))
+
+    def effect(e: Effect) -> Effect:
+        new = {}
+        for key, values in e.values().items():
+            by = twist[d:] if key == "torque" else twist[:d] if key in BODY.get(e.kind, ()) else np.ones(len(values))
+            new[key] = vector(values, by)
+        return replace(e, **new)  # type: ignore[type-var]
 
     poses = rod.poses(state)
     if poses.angle is not None:
@@ -72,7 +84,7 @@ def reversed_scene(scene: Scene, rod: SemiDiscrete, state: Array) -> Scene:
         reference=vector(model.reference, strain),
         left=end(model.right),
         right=end(model.left),
-        effects=tuple(Weight(tuple(back(e) for e in effect.force)) for effect in model.effects),
+        effects=tuple(effect(e) for e in model.effects),
     )
     start = Start(vector(scene.start.strain, strain), tuple(float(x) for x in poses.position[-1]), rotation)
     return replace(scene, model=there, start=start)
@@ -101,7 +113,19 @@ def lifted(scene: Scene) -> Scene:
 
     def end(e: End) -> End:
         force = None if e.force is None else (*e.force, ZERO)
-        return replace(e, force=force, torque=None if e.torque is None else (ZERO, ZERO, *e.torque))
+        twist = None if e.twist is None else vector(e.twist)
+        return replace(e, force=force, torque=None if e.torque is None else (ZERO, ZERO, *e.torque), twist=twist)
+
+    def effect(e: Effect) -> Effect:
+        new = {}
+        for key, values in e.values().items():
+            if key == "gradient":
+                new[key] = (*values[:2], ZERO, *values[2:], *[ZERO] * 4)
+            elif key == "torque":
+                new[key] = (ZERO, ZERO, *values)
+            else:
+                new[key] = values if key == "stiffness" else (*values, ZERO)
+        return replace(e, **new)  # type: ignore[type-var]
 
     there = RodModel(
         group=SE3,
@@ -111,7 +135,9 @@ def lifted(scene: Scene) -> Scene:
         reference=vector(model.reference),
         left=end(model.left),
         right=end(model.right),
-        effects=tuple(Weight((*effect.force, ZERO)) for effect in model.effects),
+        frozen=tuple("Pi3" if name == "Pi" else name for name in model.frozen),
+        effects=tuple(effect(e) for e in model.effects),
+        joined=model.joined,
         parameters=model.parameters,
     )
     start = Start(
@@ -121,23 +147,30 @@ def lifted(scene: Scene) -> Scene:
 
 
 def turned(scene: Scene, by: Sequence[float], moved: Sequence[float]) -> Scene:
-    """The scene in a world that is turned (an angle, or a rotation vector) and then moved; nothing inside changes."""
+    """The scene in a world that is turned (an angle, or a rotation vector) and then moved, with all that is in it."""
     model, planar = scene.model, scene.model.group.rotations == 1
     G = plane_rotation(np.asarray(by[0])) if planar else rotation_from_vector(np.asarray(by, dtype=float))
 
     def rotate(entries: Vector | None) -> Vector | None:
-        if entries is None:
-            return None
-        out = []
-        for row in G:
-            total: Any = None
-            for g, e in zip(row, entries, strict=True):
-                if constant(e) == 0.0:
-                    continue
-                term = Binary("*", Number(float(g)), e)
-                total = term if total is None else Binary("+", total, term)
-            out.append(ZERO if total is None else total)
-        return tuple(out)
+        return None if entries is None else applied(G, entries)
+
+    def effect(e: Effect) -> Effect:
+        new = {}
+        for key, values in e.values().items():
+            if key in BODY.get(e.kind, ()) or key == "stiffness":
+                new[key] = values
+            elif key == "gradient":  # G gradient G^T
+                new[key] = applied(np.kron(G, G), values)
+            else:
+                new[key] = applied(G, values)
+            if key == "centre":  # a place, which moves along
+                new[key] = tuple(x + Number(float(m)) for x, m in zip(new[key], moved, strict=True))
+        if "gradient" in new:  # the flow at a place that moved is what it was there
+            n = len(moved)
+            rows = [new["gradient"][n * i : n * i + n] for i in range(n)]
+            past = [applied(np.array([moved]), row)[0] for row in rows]
+            new["velocity"] = tuple(v - w for v, w in zip(new["velocity"], past, strict=True))
+        return replace(e, **new)  # type: ignore[type-var]
 
     def end(e: End) -> End:
         if e.frame == "body":
@@ -151,6 +184,20 @@ def turned(scene: Scene, by: Sequence[float], moved: Sequence[float]) -> Scene:
     else:
         R = G @ rotation_from_vector(np.array(start.rotation))
         rotation = tuple(float(x) for x in vector_from_rotation(R))
-    effects = tuple(Weight(rotate(effect.force) or ()) for effect in model.effects)
+    effects = tuple(effect(e) for e in model.effects)
     there = replace(model, left=end(model.left), right=end(model.right), effects=effects)
     return replace(scene, model=there, start=replace(start, position=position, rotation=rotation))
+
+
+def applied(matrix: Array, entries: Vector) -> Vector:
+    """A matrix of numbers times a vector of expressions; zeros leave no term."""
+    out = []
+    for row in matrix:
+        total: Any = None
+        for g, e in zip(row, entries, strict=True):
+            if constant(e) == 0.0 or g == 0.0:
+                continue
+            term = Binary("*", Number(float(g)), e)
+            total = term if total is None else Binary("+", total, term)
+        out.append(ZERO if total is None else total)
+    return tuple(out)

@@ -9,12 +9,15 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from geocosserat.conductor import kernel_text
 from geocosserat.kernel.contract import NativeKernel
 from geocosserat.kernel.native import NativeRod
-from tests.kernel.kernels import Case, T, cases, kernel, rate, state
+from tests.discretisation.rods import FROZEN, rod
+from tests.kernel.kernels import Case, T, cases, implicit, kernel, rate, state
 
 Array = NDArray[np.float64]
-CASES = [case for case in cases(("c",)) if case.name.split()[1] in ("everything", "hung", "plain")]
+CASES = [case for case in cases(("c",)) if case.name.split()[1] in ("everything", "hung", "plain", "reeled", "ring")]
+CONSTRAINED = [case for case in cases(("c",)) if case.name in FROZEN]
 
 
 class Caller:
@@ -55,6 +58,27 @@ class Caller:
         out, none = np.full_like(b, np.nan), self.ffi.NULL
         call = self.function("solve", "double, void *, void *, void *, void *, double, double, int, void *")
         assert call(0.0, none, none, self.at(b), self.at(out), 0.0, 0.0, 1, self.problem) == 0
+        return out
+
+    def residual(self, t: float, y: Array, slope: Array, out: Array) -> int:
+        call = self.function("residual", "double, void *, void *, void *, void *")
+        return int(call(t, self.at(y), self.at(slope), self.at(out), self.problem))
+
+    def residual_jacobian(self, t: float, c: float, y: Array) -> Array:
+        J, none = np.full((len(y), len(y)), np.nan), self.ffi.NULL
+        call = self.function("residual_jacobian", "double, double" + ", void *" * 8)
+        assert call(t, c, self.at(y), none, none, self.at(J), self.problem, none, none, none) == 0
+        return J.T
+
+    def residual_setup(self, t: float, y: Array, c: float) -> int:
+        none = self.ffi.NULL
+        call = self.function("residual_setup", "double, void *, void *, void *, double, void *")
+        return int(call(t, self.at(y), none, none, c, self.problem))
+
+    def residual_solve(self, b: Array, c: float) -> Array:
+        out, none = np.full_like(b, np.nan), self.ffi.NULL
+        call = self.function("residual_solve", "double" + ", void *" * 5 + ", double, double, void *")
+        assert call(0.0, none, none, none, self.at(b), self.at(out), c, 0.0, self.problem) == 0
         return out
 
 
@@ -101,3 +125,47 @@ def test_a_rate_that_is_not_finite_asks_for_a_smaller_step(case: Case) -> None:
         code, _ = Caller(k, dense=False).setup(T, broken, False, 0.1)
         assert code >= 0
     assert Caller(k, dense=True).rate(T, y, out) == 0
+
+
+@pytest.mark.parametrize("case", [c for c in CASES if c.name not in FROZEN], ids=str)
+def test_only_a_rod_with_frozen_modes_has_residuals(case: Case) -> None:
+    """The others are ordinary: their addresses are 0, and nothing of the kind is in their kernel."""
+    found = Caller(native(case), dense=True).callbacks
+    assert (found.residual, found.residual_jacobian, found.residual_setup, found.residual_solve) == (0, 0, 0, 0)
+    assert "residual" not in kernel_text(rod(*case[:3]).structure).c
+
+
+@pytest.mark.parametrize("case", CONSTRAINED, ids=str)
+def test_the_residual_is_the_slope_less_the_rate_and_of_frozen_modes_the_constraint(case: Case) -> None:
+    """Digit for digit; a rate that is not finite asks for a smaller step."""
+    y, slope, out = state(case, 1), state(case, 2), np.empty(len(state(case, 1)))
+    caller = Caller(native(case), dense=True)
+    assert caller.residual(T, y, slope, out) == 0
+    held, f = rod(*case[:3]).algebraic == 1, rate(case, T, y)
+    assert 0 < held.sum() < len(y)
+    np.testing.assert_array_equal(out, np.where(held, f, slope - f))
+    y[-3] = np.nan
+    assert caller.residual(T, y, slope, out) == 1
+
+
+@pytest.mark.parametrize("case", CONSTRAINED, ids=str)
+def test_the_jacobian_of_the_residual_is_that_of_what_it_says(case: Case) -> None:
+    """With the slope a multiple c of the state, as IDA has it: c - df/dy, and df/dy of frozen modes."""
+    k, y, c = native(case), state(case, 1), 7.0
+    J, held = k.jacobian(T, y), rod(*case[:3]).algebraic == 1
+    wanted = np.where(held[:, None], J, c * np.eye(len(y)) - J)
+    np.testing.assert_array_equal(Caller(k, dense=True).residual_jacobian(T, c, y), wanted)
+
+
+@pytest.mark.parametrize("case", CONSTRAINED, ids=str)
+@pytest.mark.parametrize("c", [0.5, 30.0])
+def test_the_preconditioner_of_the_residual_is_the_block_solve_of_its_jacobian(case: Case, c: float) -> None:
+    """Of the turns and stresses; of what stands behind them c alone."""
+    k, y, b = native(case), state(case, 1), state(case, 2)
+    caller = Caller(k, dense=False)
+    assert caller.residual_setup(T, y, c) == 0
+    held = rod(*case[:3]).algebraic == 1
+    found, matrix = caller.residual_solve(b, c), implicit(case, k.jacobian(T, y), 1 / c)
+    wanted = np.linalg.solve(matrix, np.where(held, b, b / c))
+    accuracy = max(1e-11, 1e-16 * np.linalg.cond(matrix))
+    np.testing.assert_allclose(found, wanted, rtol=0, atol=accuracy * np.abs(wanted).max())

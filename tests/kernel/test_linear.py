@@ -10,30 +10,17 @@ from geocosserat.conductor import kernel_text
 from geocosserat.discretisation.semidiscrete import discretise
 from geocosserat.kernel.load import load
 from geocosserat.kernel.native import NativeRod
-from tests.discretisation.rods import WORLD, random_state, rod, scene
-from tests.kernel.kernels import Case, T, cases, kernel, state
+from tests.discretisation.rods import WORLD, random_state, scene
+from tests.kernel.kernels import Case, T, cases, eliminated, implicit, kernel, state, turns
 
 Array = NDArray[np.float64]
 ids = pytest.mark.parametrize("case", cases(), ids=str)
 
 
-def turns(case: Case) -> int:
-    """How many state entries are components of the turn."""
-    r = rod(*case[:3])
-    return r.structure.group.dimension * len(r.mesh.u_point)
-
-
-def implicit(case: Case, J: Array, gamma: float) -> Array:
-    """1 - gamma dE/dt / dE, what the block solve is the inverse of; entries behind the turn are left as they are."""
-    matrix, m = np.eye(len(J)), turns(case)
-    matrix[:m, :m] -= gamma * J[:m, :m]
-    return matrix
-
-
 @ids
 @pytest.mark.parametrize("gamma", [1e-4, 0.3, -0.2, 50.0])
 def test_a_block_solve_is_the_dense_solve(case: Case, gamma: float) -> None:
-    """For any step, at a random state, where the matrix is decently conditioned."""
+    """For any step, at a random state, where the matrix is decently conditioned; of rings too."""
     k, y, b = kernel(case), state(case, 1), state(case, 2)
     matrix = implicit(case, k.jacobian(T, y), gamma)
     out = np.full_like(b, np.nan)
@@ -41,12 +28,13 @@ def test_a_block_solve_is_the_dense_solve(case: Case, gamma: float) -> None:
     k.factor(gamma)
     k.solve(b, out)
     wanted = np.linalg.solve(matrix, b)
-    assert np.linalg.cond(matrix) < 1e6
-    np.testing.assert_allclose(out, wanted, rtol=0, atol=1e-11 * np.abs(wanted).max())
+    condition = np.linalg.cond(matrix)
+    assert condition < 1e7
+    np.testing.assert_allclose(out, wanted, rtol=0, atol=max(1e-11, 1e-16 * condition) * np.abs(wanted).max())
     np.testing.assert_array_equal(out[turns(case) :], b[turns(case) :])
 
 
-@pytest.mark.parametrize("case", [c for c in cases() if c.name.endswith("everything")], ids=str)
+@pytest.mark.parametrize("case", [c for c in cases() if c.name.endswith(("everything", "reeled", "ring"))], ids=str)
 def test_factors_may_be_made_again_from_the_same_blocks_and_used_often(case: Case) -> None:
     """prepare, then factor with one step after another, then solve with any number of right-hand sides."""
     k, y = kernel(case), state(case, 1)
@@ -60,19 +48,14 @@ def test_factors_may_be_made_again_from_the_same_blocks_and_used_often(case: Cas
             np.testing.assert_allclose(implicit(case, J, gamma) @ out, b, rtol=0, atol=1e-11)
 
 
-@pytest.mark.parametrize("case", [c for c in cases() if c.name not in WORLD], ids=str)
-def test_the_blocks_are_the_jacobian_where_nothing_sees_the_world(case: Case) -> None:
-    """Block-tridiagonal, entry q d + c of a block being component c at point q."""
-    k, y, r = kernel(case), state(case, 5), rod(*case[:3])
-    n, p, d, Q = case.elements, case.degree, r.structure.group.dimension, len(r.mesh.u_point)
-    matrix = np.zeros((n, p * d, n, p * d))
-    for shift, blocks in zip((-1, 0, 1), k.blocks(T, y), strict=True):
-        for e in range(max(0, -shift), n - max(0, shift)):
-            matrix[e, :, e + shift] = blocks[e]
-    # from (element, point, component) to the order of the state
-    order = np.arange(d * Q).reshape(d, n, p).transpose(1, 2, 0).ravel()
-    J = k.jacobian(T, y)[: d * Q, : d * Q][np.ix_(order, order)]
-    np.testing.assert_allclose(matrix.reshape(J.shape), J, rtol=0, atol=1e-14 * np.abs(J).max())
+@ids
+def test_the_blocks_are_the_jacobian_once_poses_are_eliminated(case: Case) -> None:
+    """Block-tridiagonal, entry q d + c of a block being component c at point q; rings have two blocks more, and rods
+    that see the world rows for the pose of each element's left end."""
+    k, y, m = kernel(case), state(case, 5), turns(case)
+    J = k.jacobian(T, y)[:m, :m]
+    found = eliminated(case, k.blocks(T, y))
+    np.testing.assert_allclose(found, J, rtol=0, atol=(1e-13 if case.name in WORLD else 1e-14) * np.abs(J).max())
 
 
 @pytest.mark.parametrize("case", cases(("c",)), ids=str)
