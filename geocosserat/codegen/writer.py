@@ -123,7 +123,8 @@ class Writer:
         ends = [self.end("left", s.left, tapes), self.end("right", s.right, tapes)]
         d = group.dimension
         surrounding = {name for name, _ in tapes["surroundings"].outputs}
-        blocks = {name: self.block(tape) for name, tape in tapes.items() if not name.startswith(("load", "turn", "twist"))}
+        apart = ("load", "turn", "twist")
+        blocks = {name: self.block(tape) for name, tape in tapes.items() if not name.startswith(apart)}
         turn = self.block(tapes["turn"])
         return {
             **blocks,

@@ -16,6 +16,7 @@ from geocosserat.algebra.groups import Array
 from geocosserat.derivation.chart_maps import maps
 from geocosserat.derivation.charts import Chart, chart_of, frame
 from geocosserat.derivation.distribute import terms
+from geocosserat.derivation.elimination import put_in
 from geocosserat.derivation.notation import T, U, field_names, is_field
 from geocosserat.derivation.records import EndConditions, Equation, Equations, FieldEquations, Vector
 from geocosserat.model.errors import InputError
@@ -109,15 +110,6 @@ def in_chart(equations: FieldEquations, name: str | None = None) -> CoordinateEq
     )
     _refuse_open(system)
     return system
-
-
-def put_in(e: sp.Expr, values: Mapping[sp.Expr, sp.Expr]) -> sp.Expr:
-    """e with values for fields, in their derivatives too."""
-    jets = {}
-    for derivative in e.atoms(sp.Derivative):
-        if derivative.expr in values:
-            jets[derivative] = values[derivative.expr].diff(*derivative.variable_count)
-    return e.xreplace(jets).xreplace(dict(values))
 
 
 def _entries(chart: Chart) -> Array:

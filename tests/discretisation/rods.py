@@ -220,7 +220,8 @@ def cast(motion: str) -> dict[str, dict[str, Any]]:
         ),
         "reeled": _rod(
             motion,
-            {"stiffness": full(motion), "friction": blocks(motion), "reference": ACTIVE[motion], "frozen": _bends(motion)},
+            {"stiffness": full(motion), "friction": blocks(motion), "reference": ACTIVE[motion]}
+            | {"frozen": _bends(motion)},
             ends={"left": load(motion, 0.5, -0.4, 0.3, 0.1, 0.2, 0.3, frame="world"), "right": CLAMPED},
             effects=acting(motion, "flow", "field", "weight"),
         ),

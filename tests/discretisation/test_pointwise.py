@@ -122,7 +122,7 @@ def test_the_velocity_relative_to_the_medium_is_symmetric_in_its_drive(name: str
 
 @pytest.mark.parametrize("motion", MOTIONS)
 def test_a_carried_frame_follows_its_twist(motion: str) -> None:
-    """phi_dot = phi V for the matrix of the carried pose, and shift is the small motion that a change of the pose makes,
+    """phi_dot = phi V for the matrix of the carried pose, and shift is the small motion that a change of it makes,
     rotation first."""
     p = expressions(f"{motion} plain")
     group = p.group

@@ -71,7 +71,7 @@ def test_the_mobility_is_the_inverse_of_the_friction(name: str, size: tuple[int,
     np.testing.assert_allclose(mobility @ friction, np.broadcast_to(np.eye(d), mobility.shape), rtol=0, atol=1e-12)
 
 
-@pytest.mark.parametrize("name", [name for name in NAMES if name.split()[1] in ("cranked", "hinged", "swept", "reeled")])
+@pytest.mark.parametrize("name", [f"{m} {n}" for m in MOTIONS for n in ("cranked", "hinged", "swept", "reeled")])
 def test_a_held_end_has_the_friction_of_its_node_and_the_inverse_of_that_of_its_rotations(name: str) -> None:
     """Of the rotations alone, where their translations are held."""
     r = rod(name, 4, 2)

@@ -83,8 +83,8 @@ def test_every_coefficient_stands_where_it_varies(name: str) -> None:
     arguments = {c.name: place for place in ("uniform", "point", "node") for c in found.at(place)}  # type: ignore[arg-type]
     for c in found.coefficients:
         if c.expression is None:
-            ends = ("friction", "mobility", "pull", "home")
-            assert c.name.startswith(("mobility", "slack", *(f"{side}_{x}" for side in ("left", "right") for x in ends)))
+            ends = [f"{side}_{x}" for side in ("left", "right") for x in ("friction", "mobility", "pull", "home")]
+            assert c.name.startswith(("mobility", "slack", *ends))
             assert c.place in (("uniform", "node") if c.name.startswith("mobility") else ("uniform",))
             assert arguments[c.name] == c.place
             continue
@@ -212,9 +212,9 @@ def test_a_planar_dead_torque_is_a_body_torque() -> None:
 
 @pytest.mark.parametrize("motion", MOTIONS)
 def test_poses_are_marched_from_the_end_that_is_held_best(motion: str) -> None:
-    """A driven one before a clamped one before a pinned one before a free one, the left one if both are alike: what a
-    held end far from there is drawn back to is its place, and a driven end has none. Unless the base is clamped, its pose
-    is carried: position and angle, or position and quaternion."""
+    """A driven one before a clamped one before a pinned one before a free one, the left one if both are alike: a held
+    end far from there is drawn back to its place, and a driven end has none. Unless the base is clamped, its pose is
+    carried: position and angle, or position and quaternion."""
     ends = {"driven": driven(motion), "clamped": CLAMPED, "pinned": PINNED, "free": FREE}
     order = list(ends)
     for left in ends:

@@ -72,7 +72,7 @@ def test_c_and_numpy_agree_to_round_off(case: Case) -> None:
 
 @pytest.mark.parametrize(
     "case",
-    [c for c in cases() if c.name.endswith(("everything", "stirred", "cranked")) and (c.elements, c.degree) == SIZES[1]],
+    [c for c in cases() if c.name.endswith(("everything", "stirred", "cranked")) and c[1:3] == SIZES[1]],
     ids=str,
 )
 @pytest.mark.parametrize("t", [0.0, 0.2, 0.5, 7.0])

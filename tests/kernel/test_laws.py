@@ -103,8 +103,8 @@ def test_a_rod_at_rest_without_loads_stays_at_rest(name: str, size: tuple[int, i
 
 @names
 def test_ends_move_as_they_are_told(name: str) -> None:
-    """In any state: clamped ones not at all, pinned ones about their place, driven ones as the scene says, and free ones
-    as they will."""
+    """In any state: clamped ones not at all, pinned ones about their place, driven ones as the scene says, free ones as
+    they will."""
     r, model = rod(name, 4, 2), scene(name).model
     y = state(Case(name, 4, 2, "numpy"), 13)
     twist = kernel(Case(name, 4, 2, "numpy")).observe(T, y)[0]
@@ -142,7 +142,7 @@ def test_a_far_end_that_strayed_goes_home(name: str) -> None:
 
 
 def drag_and_load(name: str, size: tuple[int, int], y: Array) -> tuple[Array, Array, Array]:
-    """Turn (6, points), drag of the kernel's motion relative to the medium, and all that acts on the nodes (6, nodes)."""
+    """Turn (6, points), drag of the kernel's motion relative to the medium, and what acts on the nodes (6, nodes)."""
     r, exact = rod(name, *size), reference(name, *size)
     motion = exact.move(T, y)
     slip = -oracle.floats(motion.medium)
@@ -244,8 +244,8 @@ def test_turning_the_world_with_the_rod_changes_nothing(name: str, size: tuple[i
     """Loads and effects turned along with the start, and all of it moved: a million lengths away where only directions
     matter, a few where places do."""
     planar = name.startswith("planar")
-    far = 1.0 if name in PLACED else 1e6
-    away = turned(scene(name), [1.234] if planar else [0.4, -1.1, 2.0], [far * x for x in (1, -2, 3)[: 2 + (not planar)]])
+    far = np.array([1.0, -2.0] if planar else [1.0, -2.0, 3.0]) * (1 if name in PLACED else 1e6)
+    away = turned(scene(name), [1.234] if planar else [0.4, -1.1, 2.0], far.tolist())
     r, k = numpy_rod(away, size)
     case = Case(name, *size, "numpy")
     y, out = state(case, 17), np.empty(len(r.state))
@@ -258,7 +258,7 @@ def test_turning_the_world_with_the_rod_changes_nothing(name: str, size: tuple[i
 @names
 def test_a_reversed_rod_moves_in_reverse(name: str, size: tuple[int, int]) -> None:
     """Ends swapped, coordinate reversed, frame turned by pi: the same motion, the same energies, to round-off."""
-    # held alike at both ends, a rod is drawn home at the one that is last: told to stay, it is the same from either side
+    # held alike at both ends, a rod is drawn home at the one that is last; without a pull both sides are the same
     alike = scene(name).model.left.kind == scene(name).model.right.kind
     here, k_here = numpy_rod(scene(name), size, 0.0 if alike else 0.7)
     y = random_state(here, 18)

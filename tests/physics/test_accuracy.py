@@ -26,7 +26,7 @@ def _fine(name: str) -> Array:
 @pytest.mark.parametrize("name", NAMES)
 def test_the_true_error_is_below_the_one_asked_for(name: str, accuracy: float) -> None:
     """Largest distance of any node from a far finer rod, relative to the length; and it says that it is."""
-    settings = ["run.frames=2", "run.backend=numpy"]
+    settings = ["run.frames=2"]
     run = geocosserat.run(EXAMPLES / f"{name}.toml", settings=settings, accuracy=accuracy)
     scene = load_scene(EXAMPLES / f"{name}.toml")
     fine = discretise(scene, 4, 16).mesh
