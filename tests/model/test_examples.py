@@ -7,13 +7,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geocosserat.model.expressions import evaluate, jump_positions, symbols
+from geocosserat.model.expressions import Number, evaluate, jump_positions, symbols
 from geocosserat.model.scene import load_scene
+from geocosserat.model.schema import END_KINDS
 
 EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.toml"))
 NAMES = {file.stem for file in EXAMPLES}
+EFFECTS = ("weight", "follower", "couple", "field", "flow", "trap")
 PROMISED = {
-    "cantilever", "chiral", "circle", "elastica", "follower", "hanging", "helix", "sinking", "stepped",
+    "cantilever", "chiral", "cilium", "circle", "couple", "driven", "elastica", "euler_bernoulli", "follower",
+    "hanging", "helix", "inextensible", "kirchhoff", "magnetic", "pinned", "pure_twist", "ring", "sinking", "spun",
+    "stepped", "swimmer", "trapped", "tumbling",
 }  # fmt: skip
 
 
@@ -68,3 +72,16 @@ def test_the_examples_show_what_their_names_say() -> None:
     circle = scenes["circle"].model
     assert circle.right.torque is not None
     assert evaluate(circle.right.torque[0], circle.parameters) == pytest.approx(2 * np.pi)
+
+
+def test_every_effect_and_every_kind_of_end_has_an_example() -> None:
+    """So have joined ends, frozen modes, a rotation without friction, and a reference that changes in time."""
+    models = [load_scene(file).model for file in EXAMPLES]
+    assert {effect.kind for model in models for effect in model.effects} == set(EFFECTS)
+    assert {end.kind for model in models for end in (model.left, model.right)} >= set(END_KINDS)
+    assert any(model.joined for model in models)
+    assert any(model.friction[-1][-1] == Number(0.0) for model in models)
+    assert any("t" in symbols(e) for model in models for e in model.reference)
+    held = {tuple(model.held) for model in models}
+    assert {(True, False, False), (True, True, False), (True, True, True, False, False, False)} <= held
+    assert (True, True, True, False, True, True) in held

@@ -111,7 +111,7 @@ def test_a_frozen_bend_follows_a_reference_that_changes_as_a_stiff_one_does() ->
     ):
         np.testing.assert_allclose(errors[1] / errors[2], 10.0, rtol=0.1)
     assert limit.ledger["residual"] < 1e-8
-    assert np.linalg.norm(limit.solution.position[-1, 0]) > 0.1
+    assert np.linalg.norm(limit.solution.position[-1].mean(axis=0) - limit.solution.position[0].mean(axis=0)) > 0.01
 
 
 def _bent(u: Array) -> Array:
@@ -138,7 +138,9 @@ def test_a_rod_that_cannot_stretch_moves_as_the_equations_of_its_line_say(fricti
         scene = changed(
             scene,
             {
-                "start": {"strain": ["1", "0", "-3*u**2*(3 - 2*u)"], "position": _start_of_tip().tolist(), "angle": 1.5 + np.pi},
+                "start.strain": ["1", "0", "-3*u**2*(3 - 2*u)"],
+                "start.position": _start_of_tip().tolist(),
+                "start.angle": 1.5 + np.pi,
                 "ends": {"left": scene["ends"]["right"], "right": {"kind": "clamped"}},
             },
         )
@@ -160,10 +162,8 @@ def _start_of_tip() -> Array:
     return np.array([0.5 * weight @ np.cos(_bent(u)), 0.5 * weight @ np.sin(_bent(u))])
 
 
-@pytest.mark.parametrize(
-    ("frozen", "friction"), [([], 0), ([], 0.01), (["Pi1"], 0.01)], ids=["quasi-static", "rotary", "untwistable"]
-)
-def test_at_rest_it_is_the_rod_of_kirchhoff(frozen: list[str], friction: float) -> None:
+@pytest.mark.parametrize("frozen", [[], ["Pi1"]], ids=["twistable", "untwistable"])
+def test_at_rest_it_is_the_rod_of_kirchhoff(frozen: list[str]) -> None:
     """Curled at rest, weight, force and torque in the world: pose, bends and all six stresses, to 1e-9."""
     stiffness = (np.inf if frozen else 0.8, 1.2, 1.0)
     base = np.array([0.3, -0.5, 0.8])
@@ -172,7 +172,7 @@ def test_at_rest_it_is_the_rod_of_kirchhoff(frozen: list[str], friction: float) 
         (0.2, -0.5, -1.0), (0.3, -0.2, 0.5), Rotation.from_rotvec(base).as_matrix(),
     )  # fmt: skip
     scene = changed(
-        straight([1.0, 1.0, 1.0, 0.8, 1.2, 1.0], [1.0, 2.0, 1.5, friction, friction, friction], length=1.2),
+        straight([1.0, 1.0, 1.0, 0.8, 1.2, 1.0], [1.0, 2.0, 1.5, 0.01, 0.01, 0.01], length=1.2),
         {
             "rod.frozen": ["h1", "h2", "h3", *frozen],
             "rod.reference": ["1", "0", "0", "0.7", "0.5*cos(2*u)", "1 - 0.6*u"],

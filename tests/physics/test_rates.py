@@ -51,7 +51,7 @@ def test_frozen_stretch_and_shear_leave_the_rates_of_euler_and_bernoulli(ends: t
 
 @pytest.mark.parametrize("ends", ENDS, ids="-".join)
 def test_the_same_without_friction_of_the_rotation(ends: tuple[Any, Any]) -> None:
-    """Three modes, to three digits: the rotation has 1e-10 of the other friction, which costs the Jacobian ten of them."""
+    """Three modes, to three digits: what is left of the friction, 1e-10, costs the Jacobian's sums ten of them."""
     expected = euler_bernoulli.decay_rates(LENGTH, K3, FRICTION2, 0, _named(ends), 3)
     assert farthest(expected, _decays(_bending(ends, 0, rod__frozen=["h1", "h2"]), 14)) < 1e-3
 

@@ -1,4 +1,4 @@
-"""Small harmonic motions: complex amplitudes of whatever shakes a rod, at its ends or along it, and the power it takes."""
+"""Small harmonic motions: complex amplitudes of whatever shakes a rod at its ends or along it, and their power."""
 
 from __future__ import annotations
 
