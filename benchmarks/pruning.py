@@ -1,8 +1,8 @@
 """What each mode and each effect costs: python -m benchmarks.pruning.
 
 The same motion, a rod that relaxes in its plane, by models with ever less in them; then one effect at a time on top of
-the planar and of the spatial rod. Seconds are those of the integration at the cheapest of a set of settings whose tip is
-within 1e-6 of the length of that model's own converged tip.
+the planar and of the spatial rod. Seconds are those of the integration at the cheapest of a set of settings whose tip
+is within 1e-6 of the length of that model's own converged tip.
 """
 
 from __future__ import annotations

@@ -6,7 +6,7 @@ from geocosserat.kernel.contract import Array, Kernel
 from geocosserat.solver.settings import DENSE_LIMIT
 
 SOLVED = 1e-6
-"""Of what constraints were violated by; more is left where a kernel's elimination leaves something out (a ring's seam)."""
+"""Of what constraints were violated by; where more is left, the kernel's elimination was too inaccurate."""
 
 
 def consistent(kernel: Kernel, t: float, y: Array, blocks: bool = False) -> Array:

@@ -149,7 +149,7 @@ def test_a_setting_into_what_is_no_table_is_refused() -> None:
 @pytest.mark.parametrize("file", EXAMPLES, ids=lambda file: file.stem)
 def test_the_source_of_a_changed_scene_is_the_changed_scene(file: Path) -> None:
     """What is kept beside a solution loads to the scene that was solved, settings and all."""
-    scene = load_scene(file, ["run.until=0.125", "rod.length=1.5", 'title="quoted" \\ title'])
+    scene = load_scene(file, ["run.until=0.125", "run.frames=7", 'title="quoted" \\ title'])
     again = load_scene(scene.source)
     assert (again.title, again.model, again.start, again.run) == (
         scene.title,
@@ -158,6 +158,7 @@ def test_the_source_of_a_changed_scene_is_the_changed_scene(file: Path) -> None:
         scene.run,
     )
     assert scene.run.until == 0.125
+    assert scene.run.frames == 7
     assert again.source == scene.source
 
 

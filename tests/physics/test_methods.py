@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from geocosserat.solver import cvode, cvode_native
+from geocosserat.solver import cvode, session
 from tests.physics.scenes import Array, Scene, changed, example, simulate, tip
 
 SCENES = {name: changed(example(name), {"run.until": until}) for name, until in (("follower", 0.3), ("sinking", 0.02))}
@@ -52,7 +52,7 @@ def test_dense_and_block_elimination_agree(
     tips, steps = [], []
     for limit in (10_000, 0):
         monkeypatch.setattr(cvode, "DENSE_LIMIT", limit)
-        monkeypatch.setattr(cvode_native, "DENSE_LIMIT", limit)
+        monkeypatch.setattr(session, "DENSE_LIMIT", limit)
         run = simulate(scene, 3, 6, 1e-9, backend)
         tips.append(tip(run))
         steps.append(run.evaluations["steps"])

@@ -185,3 +185,12 @@ class NativeConstrained(NativeForced):
 
     def jacobian(self, t: float, y: Array) -> Array:
         return self._python.jacobian(t, y)
+
+    def prepare(self, t: float, y: Array) -> None:
+        self._python.prepare(t, y)
+
+    def factor(self, gamma: float) -> None:
+        self._python.factor(gamma)
+
+    def solve(self, b: Array, out: Array) -> None:
+        self._python.solve(b, out)
