@@ -152,8 +152,9 @@ def test_a_passive_rod_without_loads_never_gains_energy(
     homing = ends == ("clamped", "clamped")
     assert np.all(np.diff(solution.energy) <= (0.1 * rtol + 1e-8 * homing) * start)
     np.testing.assert_allclose(solution.work, 0.0, rtol=0, atol=homing * (1e-3 + 100 * rtol) * start)
-    assert np.all(np.diff(solution.dissipated) >= -0.1 * rtol * start)
-    np.testing.assert_allclose(solution.energy + solution.dissipated - solution.work, start, rtol=0, atol=1000 * rtol * start)
+    assert np.all(np.diff(solution.dissipated) >= -(0.1 + 0.9 * homing) * rtol * start)
+    balance = solution.energy + solution.dissipated - solution.work
+    np.testing.assert_allclose(balance, start, rtol=0, atol=1000 * rtol * start)
     assert solution.energy[-1] < 0.8 * start
 
 
