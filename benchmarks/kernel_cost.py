@@ -125,7 +125,8 @@ def _alternate(
     for field, array in zip(FIELDS, kept, strict=True):
         setattr(r, field, at(array))
     r.work = at(work)
-    tables = [np.ascontiguousarray(t) for t in np.split(rod.tables, np.arange(1, 6) * rod.mesh.degree * (rod.mesh.degree + 1))[:5]]
+    one = mesh.degree * (mesh.degree + 1)  # numbers of each of the first five tables
+    tables = [np.ascontiguousarray(t) for t in rod.tables[: 5 * one].reshape(5, one)]
     share, hand_work = 1 / mesh.mass, np.zeros(4 * d * (points + 2))
     h = ffi.new("hand *", {"elements": mesh.elements, "half": mesh.half[0]})
     h.stiffness[0:d] = STIFFNESS[motion]
