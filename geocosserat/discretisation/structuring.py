@@ -157,11 +157,23 @@ def _end(names: _Names, side: str, end: End, model: RodModel, dragged: bool) -> 
     return EndStructure(end.kind, twist, _load(names, side, end, group), mobility, friction)
 
 
+def _stirred(model: RodModel) -> bool:
+    """Whether something may move the rod for ever: anything timed, any load that no potential of its pose gives."""
+    frame = seen(model.group.space)
+    ends = (model.left, model.right)
+    if any(end.kind == "driven" or end.force or end.torque for end in ends):
+        return True
+    timed = any("t" in symbols(e) for e in model.reference)
+    timed |= any("t" in symbols(e) for effect in model.effects for value in effect.values().values() for e in value)
+    return timed or any(effect.potential(frame) is None for effect in model.effects)
+
+
 def _homing(names: _Names, side: str, end: EndStructure, space: int) -> EndStructure:
     """The same end, drawn back to its place by as much as it strays from there.
 
     Where the base of the poses is the other end, nothing but the strains says where this one is, and those carry the
-    error of the scheme. So its twist is not zero but -pull times its distance from home: zero but for that error.
+    error of the scheme: once, where the rod settles, but over and over where it is stirred. So its twist is then not
+    zero but -pull times its distance from home: zero but for that error.
     """
 
     def home(name: str) -> Expression:
@@ -221,9 +233,10 @@ def structure_of(model: RodModel) -> RodStructure:
     left, right = (_end(names, side, end, model, present(medium)) for side, end in sides)
     base = "left" if FIRMNESS.index(model.left.kind) >= FIRMNESS.index(model.right.kind) else "right"
     held = model.joined or "free" not in (model.left.kind, model.right.kind)
-    if held and base == "left" and right.kind in ("clamped", "pinned"):
+    stirred = held and not model.joined and _stirred(model)
+    if stirred and base == "left" and right.kind in ("clamped", "pinned"):
         right = _homing(names, "right", right, group.space)
-    elif held and base == "right" and left.kind in ("clamped", "pinned"):
+    elif stirred and base == "right" and left.kind in ("clamped", "pinned"):
         left = _homing(names, "left", left, group.space)
     for stress, frozen_mode in zip(group.stress, frozen, strict=True):
         if held and frozen_mode:

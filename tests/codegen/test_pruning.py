@@ -83,17 +83,17 @@ MARKS = {
     r"\bjoin\(": {"joined"},
     r"\bmerge\(": {"joined"},
     r"\bclose_ring\(": {"joined"},
-    r"\borient\(": {"clamped clamped"},
+    r"\borient\(": set(),
     r"\bFROZEN\[": {"frozen"},
     r"\bproblem_residual\(": {"frozen"},
     r"\bload_on\(": set(),
     r"\bactivity\(": set(),
     r"\bsurround\(": set(),
     r"\bheaviside\(": set(),
-    r"\bpower\[stride \+ n\]": {"driven free", "clamped clamped"},
+    r"\bpower\[stride \+ n\]": {"driven free"},
     r"_mobility_": {"pinned free"},
     r"_friction_": {"driven free"},
-    r"_(pull|home_\w+) ": {"clamped clamped"},
+    r"_(pull|home_\w+) ": set(),
 }
 
 
