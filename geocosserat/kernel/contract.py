@@ -11,21 +11,20 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Callbacks:
-    """Addresses of C functions with the signatures of CVODE's callbacks, for integrations that never leave C.
+    """Addresses of C functions with the signatures of SUNDIALS' callbacks, for integrations that never leave C.
 
-    data: what they take as their user data; keep: whatever must stay alive while they are used. The residuals are
-    those of IDA, of kernels with constraints; 0 where there are none.
+    data: what they take as their user data. rate: of CVODE; system: factors its linear system; solve: as a linear
+    solver, whose first member points to `data`. The residuals are those of IDA, of kernels with constraints; 0 where
+    there are none. keep: whatever must stay alive while they are used.
     """
 
     data: int
     rate: int
-    jacobian: int
-    setup: int
+    system: int
     solve: int
     keep: Any
     residual: int = 0
-    residual_jacobian: int = 0
-    residual_setup: int = 0
+    residual_system: int = 0
     residual_solve: int = 0
 
 
@@ -33,8 +32,8 @@ class Callbacks:
 class NativeKernel(Protocol):
     """A kernel that can also be called from C."""
 
-    def callbacks(self, vector: int, matrix: int, dense: bool) -> Callbacks:
-        """Its callbacks; vector and matrix are the addresses of N_VGetArrayPointer and SUNDenseMatrix_Data."""
+    def callbacks(self, vector: int) -> Callbacks:
+        """Its callbacks; vector is the address of N_VGetArrayPointer."""
 
 
 class Kernel(Protocol):

@@ -22,35 +22,34 @@ typedef struct rod {
 size_t rod_work(int elements);
 size_t rod_block(void);
 size_t rod_pair(void);
+size_t rod_border(void);
 size_t rod_factors(void);
 size_t rod_scratch(void);
 int rod_rate(const rod *r, double t, const double *y, double *dy);
 int rod_observe(const rod *r, double t, const double *y, double *twist, double *stress, double *energy);
-int rod_blocks(const rod *r, double t, const double *y, double *lower, double *diagonal, double *upper,
+int rod_blocks(const rod *r, double t, const double *y, double *lower, double *diagonal, double *upper, double *border,
                double *scratch);
 int rod_dense(const rod *r, double t, const double *y, double *J, double *lower, double *diagonal, double *upper,
-              double *scratch);
+              double *border, double *scratch);
 int rod_factor(int elements, double gamma, const double *lower, const double *diagonal, const double *upper,
-               double *factors, int *pivots);
+               const double *border, double *factors, int *pivots);
 int rod_solve(int elements, const double *factors, const int *pivots, const double *b, double *x, double *scratch);
 typedef struct rod_problem {
     const rod *r;
     size_t size;
-    double *lower, *diagonal, *upper, *factors, *scratch, *solving, *dense;
+    double *lower, *diagonal, *upper, *border, *factors, *scratch, *solving, *right;
     int *pivots;
-    void *vector, *matrix;
+    void *vector;
+    double slope;
 } rod_problem;
 int problem_rate(double t, void *y, void *rate, void *problem);
-int problem_jacobian(double t, void *y, void *rate, void *J, void *problem, void *a, void *b, void *c);
-int problem_setup(double t, void *y, void *rate, int usable, int *renewed, double gamma, void *problem);
-int problem_solve(double t, void *y, void *rate, void *b, void *x, double gamma, double tolerance, int side,
-                  void *problem);
+int problem_system(double t, void *y, void *rate, void *none, int usable, int *renewed, double gamma, void *problem,
+                   void *a, void *b, void *c);
+int problem_solve(void *solver, void *none, void *x, void *b, double tolerance);
 int problem_residual(double t, void *y, void *yp, void *residual, void *problem);
-int problem_residual_jacobian(double t, double c, void *y, void *yp, void *residual, void *J, void *problem,
-                              void *a1, void *a2, void *a3);
-int problem_residual_setup(double t, void *y, void *yp, void *residual, double c, void *problem);
-int problem_residual_solve(double t, void *y, void *yp, void *residual, void *b, void *x, double c, double tolerance,
-                           void *problem);
+int problem_residual_system(double t, double c, void *y, void *yp, void *residual, void *none, void *problem,
+                            void *a1, void *a2, void *a3);
+int problem_residual_solve(void *solver, void *none, void *x, void *b, double tolerance);
 """
 
 
@@ -93,7 +92,7 @@ class NativeRod:
         self._rod.elements = self._elements
         for name, array in self._kept.items():
             setattr(self._rod, name, ffi.cast("double *", array.ctypes.data))
-        self._blocks: tuple[Array, Array, Array, Array] | None = None
+        self._blocks: dict[str, Array] = {}
         self._factors: tuple[Array, Any, Array] | None = None
 
     def _at(self, array: Array) -> Any:
@@ -109,90 +108,81 @@ class NativeRod:
         self._lib.rod_observe(self._rod, t, self._at(y), self._at(twist), self._at(stress), self._at(energy))
         return twist, stress, float(energy[0])
 
-    def _space(self) -> tuple[Array, Array, Array, Array]:
-        if self._blocks is None:
-            b = self._lib.rod_block()
-            lower, upper = (np.empty((self._elements, self._lib.rod_pair())) for _ in range(2))
-            self._blocks = lower, np.empty((self._elements, b, b)), upper, np.empty(self._lib.rod_scratch())
+    def _space(self) -> dict[str, Array]:
+        """Room for the blocks of the Jacobian and what making them takes, in the order in which C has them."""
+        if not self._blocks:
+            lib, n, b = self._lib, self._elements, self._lib.rod_block()
+            shapes = {
+                "lower": (n, lib.rod_pair()),
+                "diagonal": (n, b, b),
+                "upper": (n, lib.rod_pair()),
+                "border": (lib.rod_border(),),
+                "scratch": (lib.rod_scratch(),),
+            }
+            self._blocks = {name: np.empty(shape) for name, shape in shapes.items()}
         return self._blocks
 
-    def callbacks(self, vector: int, matrix: int, dense: bool) -> Callbacks:
-        """This kernel as CVODE sees it; vector and matrix are the addresses of N_VGetArrayPointer and
-        SUNDenseMatrix_Data, dense says whether Jacobians will be asked for as dense matrices."""
-        ffi, b = self._ffi, self._lib.rod_block()
-        lower, diagonal, upper, scratch = self._space()
+    def _room(self) -> tuple[Array, Array, Array]:
+        """Room for factors, pivots and solving."""
+        lib, n = self._lib, self._elements
+        b = lib.rod_block()
+        return np.empty(n * lib.rod_factors()), np.empty(n * b, dtype=np.intc), np.empty(n * b)
+
+    def callbacks(self, vector: int) -> Callbacks:
+        """This kernel as SUNDIALS sees it; vector is the address of N_VGetArrayPointer."""
+        ffi, lib = self._ffi, self._lib
         problem = ffi.new("rod_problem *")
-        arrays = {
-            "lower": lower,
-            "diagonal": diagonal,
-            "upper": upper,
-            "scratch": scratch,
-            "factors": np.empty(0 if dense else self._elements * self._lib.rod_factors()),
-            "solving": np.empty(self._elements * b),
-            "dense": np.empty(self.size * (self.size + 12) if dense else self.size),
-        }
-        pivots = np.empty(self._elements * b, dtype=np.intc)
+        factors, pivots, solving = self._room()
+        arrays = self._space() | {"factors": factors, "solving": solving, "right": np.empty(self.size)}
         for name, array in arrays.items():
             setattr(problem, name, ffi.cast("double *", array.ctypes.data))
         problem.pivots = ffi.cast("int *", pivots.ctypes.data)
-        problem.r, problem.size = self._rod, self.size
-        problem.vector, problem.matrix = ffi.cast("void *", vector), ffi.cast("void *", matrix)
+        problem.r, problem.size, problem.vector = self._rod, self.size, ffi.cast("void *", vector)
 
         def address(thing: Any) -> int:
             return int(ffi.cast("uintptr_t", thing))
 
-        lib = self._lib
-        constrained = ("residual", "residual_jacobian", "residual_setup", "residual_solve")
-        residuals = {name: address(getattr(lib, f"problem_{name}")) for name in constrained if self.algebraic.any()}
+        constrained = ("residual", "residual_system", "residual_solve") if self.algebraic.any() else ()
         return Callbacks(
-            **residuals,
             data=address(problem),
             rate=address(lib.problem_rate),
-            jacobian=address(lib.problem_jacobian),
-            setup=address(lib.problem_setup),
+            system=address(lib.problem_system),
             solve=address(lib.problem_solve),
             keep=(problem, arrays, pivots, self),
+            **{name: address(getattr(lib, f"problem_{name}")) for name in constrained},
         )
 
     def blocks(self, t: float, y: Array) -> tuple[Array, Array, Array]:
         """The block-tridiagonal Jacobian, (elements, block, block) each."""
         self.prepare(t, y)
-        lower, diagonal, upper, _ = self._space()
-        b = diagonal.shape[1]
+        space = self._space()
+        b = space["diagonal"].shape[1]
 
         def product(pairs: Array) -> Array:
             left, right = np.split(pairs, 2, axis=1)
             return left.reshape(self._elements, b, -1) @ right.reshape(self._elements, -1, b)
 
-        return product(lower), diagonal.copy(), product(upper)
+        return product(space["lower"]), space["diagonal"].copy(), product(space["upper"])
 
     def jacobian(self, t: float, y: Array) -> Array:
-        space = [self._at(a) for a in self._space()]
+        space = [self._at(a) for a in self._space().values()]
         J = np.empty(self.size * (self.size + 12))  # room behind the matrix for the eliminated orientations
         self._lib.rod_dense(self._rod, t, self._at(y), self._at(J), *space)
         return J[: self.size**2].reshape(self.size, self.size)
 
     def prepare(self, t: float, y: Array) -> None:
-        self._lib.rod_blocks(self._rod, t, self._at(y), *(self._at(a) for a in self._space()))
+        self._lib.rod_blocks(self._rod, t, self._at(y), *(self._at(a) for a in self._space().values()))
 
     def factor(self, gamma: float) -> None:
-        lower, diagonal, upper, _ = self._space()
         if self._factors is None:
-            b = diagonal.shape[1]
-            self._factors = (
-                np.empty(self._elements * self._lib.rod_factors()),
-                np.empty(self._elements * b, dtype=np.intc),
-                np.empty(self._elements * b),
-            )
+            self._factors = self._room()
         factors, pivots, _ = self._factors
-        at = self._at
+        *blocks, _ = self._space().values()
         failed = self._lib.rod_factor(
             self._elements,
             gamma,
-            at(lower),
-            at(diagonal),
-            at(upper),
-            at(factors),
+            *(self._at(a) for a in blocks),
+            self._at(factors),
             self._ffi.from_buffer(self._int, pivots),
         )
         if failed:

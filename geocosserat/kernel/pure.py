@@ -29,7 +29,7 @@ class NumpyRod:
         )
         self.size = len(rod.state)
         self.algebraic = rod.algebraic
-        self._blocks: tuple[Array, Array, Array] | None = None
+        self._linear: Any = None
         self._factors: Any = None
 
     def rate(self, t: float, y: Array, out: Array) -> None:
@@ -50,11 +50,11 @@ class NumpyRod:
         return J
 
     def prepare(self, t: float, y: Array) -> None:
-        self._blocks = self.blocks(t, y)
+        self._linear = self._rod.linearise(t, y)
 
     def factor(self, gamma: float) -> None:
-        assert self._blocks is not None, "prepare comes before factor"
-        self._factors = self._rod.factor(gamma, *self._blocks)
+        assert self._linear is not None, "prepare comes before factor"
+        self._factors = self._rod.factor(gamma, *self._linear)
 
     def solve(self, b: Array, out: Array) -> None:
         out[:] = self._rod.solve(self._factors, b)

@@ -30,7 +30,7 @@ def cvode_native(
 
 class _Cvode(Session):
     name = "CVODE"
-    rate_counts = ("RhsEvals", "LinRhsEvals")
+    rate_count, system_setter = "RhsEvals", "SetLinSysFn"
 
     def create(self, t: float) -> Any:
         return self.lib.CVodeCreate(BDF, self.context)
@@ -39,9 +39,8 @@ class _Cvode(Session):
         self._check(self.lib.CVodeInit(self.memory, self.pointer(self.callbacks.rate), t, self.state))
         self._check(self.lib.CVodeSetMaxHnilWarns(self.memory, -1))  # nor do warnings appear on the terminal
 
-    def linear(self) -> tuple[int, int, int]:
-        c = self.callbacks
-        return c.jacobian, c.setup, c.solve
+    def linear(self) -> tuple[int, int]:
+        return self.callbacks.system, self.callbacks.solve
 
     def advance(self, until: float, reached: Any) -> int:
         return int(self.lib.CVode(self.memory, until, self.state, reached, NORMAL))

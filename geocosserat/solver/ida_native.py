@@ -33,7 +33,7 @@ def ida_native(
 
 class _Ida(Session):
     name = "IDA"
-    rate_counts = ("ResEvals", "LinResEvals")
+    rate_count, system_setter = "ResEvals", "SetJacFn"
 
     def create(self, t: float) -> Any:
         return self.lib.IDACreate(self.context)
@@ -51,9 +51,8 @@ class _Ida(Session):
         # the steps are chosen for what moves; stresses that hold a constraint follow from it
         self._check(self.lib.IDASetSuppressAlg(self.memory, 1))
 
-    def linear(self) -> tuple[int, int, int]:
-        c = self.callbacks
-        return c.residual_jacobian, c.residual_setup, c.residual_solve
+    def linear(self) -> tuple[int, int]:
+        return self.callbacks.residual_system, self.callbacks.residual_solve
 
     def advance(self, until: float, reached: Any) -> int:
         return int(self.lib.IDASolve(self.memory, until, reached, self.state, self.slopes, NORMAL))

@@ -6,28 +6,29 @@ from typing import Any, ClassVar
 import numpy as np
 
 from geocosserat.kernel.contract import Array, Kernel, NativeKernel
-from geocosserat.solver.settings import BREATH, DENSE_LIMIT, KRYLOV, STEP_LIMIT, stands_still
+from geocosserat.solver.settings import BREATH, STEP_LIMIT, stands_still
 from geocosserat.solver.sundials import Sundials
 from geocosserat.solver.trajectory import Frame, Progress, Trajectory
 
-NORMAL, LEFT = 1, 1
+NORMAL = 1
 TOO_MUCH_WORK = -1
 
 
 class Session(ABC):
-    """Owns the objects of one integration and gives them back; a subclass knows its integrator's own functions."""
+    """Owns the objects of one integration and gives them back; a subclass knows its integrator's own functions.
+
+    Linear systems are the kernel's own: its blocks are factored where SUNDIALS asks for a matrix, which is a dummy.
+    """
 
     name: ClassVar[str]
-    rate_counts: ClassVar[tuple[str, str]]
+    rate_count: ClassVar[str]
+    system_setter: ClassVar[str]
 
     def __init__(self, library: Sundials, kernel: Kernel, start: Array, t: float, rtol: float, atol: Array) -> None:
         self.library, self.ffi, self.lib = library, library.ffi, library.lib
         self.kernel: Kernel = kernel
-        self.dense = kernel.size <= DENSE_LIMIT
         assert isinstance(kernel, NativeKernel)
-        self.callbacks = kernel.callbacks(
-            library.address("N_VGetArrayPointer"), library.address("SUNDenseMatrix_Data"), self.dense
-        )
+        self.callbacks = kernel.callbacks(library.address("N_VGetArrayPointer"))
         self.y, self.atol = start.copy(), atol.copy()
         ffi, lib, call = self.ffi, self.lib, library.call
         self._context = ffi.new("void **")
@@ -42,19 +43,11 @@ class Session(ABC):
         self._check(call("SVtolerances")(self.memory, rtol, tolerance))
         self._check(call("SetUserData")(self.memory, self.pointer(self.callbacks.data)))
         self._check(call("SetMaxNumSteps")(self.memory, BREATH))
-        size = kernel.size
-        self.matrix = lib.SUNDenseMatrix(size, size, self.context) if self.dense else ffi.NULL
-        self.solver = (
-            lib.SUNLinSol_Dense(self.state, self.matrix, self.context)
-            if self.dense
-            else lib.SUNLinSol_SPGMR(self.state, LEFT, KRYLOV, self.context)
-        )
+        system, solve = self.linear()
+        self.solver = library.solver(self.pointer(solve), self.pointer(self.callbacks.data), self.context)
+        self.matrix = lib.SUNDenseMatrix(1, 1, self.context)
         self._check(call("SetLinearSolver")(self.memory, self.solver, self.matrix))
-        jacobian, setup, solve = self.linear()
-        if self.dense:
-            self._check(call("SetJacFn")(self.memory, self.pointer(jacobian)))
-        else:
-            self._check(call("SetPreconditioner")(self.memory, self.pointer(setup), self.pointer(solve)))
+        self._check(call(self.system_setter)(self.memory, self.pointer(system)))
 
     @abstractmethod
     def create(self, t: float) -> Any:
@@ -65,8 +58,8 @@ class Session(ABC):
         """Hands over the problem and its start."""
 
     @abstractmethod
-    def linear(self) -> tuple[int, int, int]:
-        """Addresses of Jacobian, and of setup and solve of the preconditioner."""
+    def linear(self) -> tuple[int, int]:
+        """Addresses of what factors the linear system, and of what solves it."""
 
     @abstractmethod
     def advance(self, until: float, reached: Any) -> int:
@@ -87,9 +80,8 @@ class Session(ABC):
     def __exit__(self, *_: object) -> None:
         lib = self.lib
         self.library.call("Free")(self._memory)
-        lib.SUNLinSolFree(self.solver)
-        if self.matrix != self.ffi.NULL:
-            lib.SUNMatDestroy(self.matrix)
+        lib.SUNLinSolFreeEmpty(self.solver)
+        lib.SUNMatDestroy(self.matrix)
         for made, _values in self._kept:
             lib.N_VDestroy(made)
         lib.SUNContext_Free(self._context)
@@ -137,8 +129,8 @@ class Session(ABC):
         return Trajectory(
             times=times[:done].copy(),
             states=states[:done],
-            rates=sum(self._count(name) for name in self.rate_counts),
-            jacobians=self._count("JacEvals" if self.dense else "PrecEvals"),
+            rates=self._count(self.rate_count),
+            jacobians=self._count("JacEvals"),
             steps=self._count("Steps"),
             reached=done == len(times),
             reason=reason,

@@ -21,11 +21,16 @@ void *N_VMake_Serial(long long length, double *data, void *context);
 double *N_VGetArrayPointer(void *vector);
 void N_VDestroy(void *vector);
 void *SUNDenseMatrix(long long rows, long long columns, void *context);
-double *SUNDenseMatrix_Data(void *matrix);
 void SUNMatDestroy(void *matrix);
-void *SUNLinSol_Dense(void *vector, void *matrix, void *context);
-void *SUNLinSol_SPGMR(void *vector, int side, int krylov, void *context);
-int SUNLinSolFree(void *solver);
+typedef void **solver;
+solver SUNLinSol_Dense(void *vector, void *matrix, void *context);
+solver SUNLinSolNewEmpty(void *context);
+int SUNLinSolGetType_Dense(solver);
+int SUNLinSolGetID_Dense(solver);
+int SUNLinSolSetup_Dense(solver, void *matrix);
+int SUNLinSolSolve_Dense(solver, void *matrix, void *x, void *b, double tolerance);
+int SUNLinSolFree(solver);
+void SUNLinSolFreeEmpty(solver);
 void free(void *);
 """
 SHARED = """
@@ -33,12 +38,9 @@ int {0}SVtolerances(void *memory, double rtol, void *atol);
 int {0}SetUserData(void *memory, void *data);
 int {0}SetMaxNumSteps(void *memory, long steps);
 int {0}SetStopTime(void *memory, double t);
-int {0}SetLinearSolver(void *memory, void *solver, void *matrix);
-int {0}SetJacFn(void *memory, void *jacobian);
-int {0}SetPreconditioner(void *memory, void *setup, void *solve);
+int {0}SetLinearSolver(void *memory, solver, void *matrix);
 int {0}GetNumSteps(void *memory, long *count);
 int {0}GetNumJacEvals(void *memory, long *count);
-int {0}GetNumPrecEvals(void *memory, long *count);
 char *{0}GetReturnFlagName(long flag);
 void {0}Free(void **memory);
 """
@@ -47,8 +49,8 @@ OWN = {
 void *CVodeCreate(int method, void *context);
 int CVodeInit(void *memory, void *rate, double t, void *y);
 int CVodeSetMaxHnilWarns(void *memory, int count);
+int CVodeSetLinSysFn(void *memory, void *system);
 int CVodeGetNumRhsEvals(void *memory, long *count);
-int CVodeGetNumLinRhsEvals(void *memory, long *count);
 int CVode(void *memory, double until, void *y, double *t, int task);
 """,
     "IDA": """
@@ -56,8 +58,8 @@ void *IDACreate(void *context);
 int IDAInit(void *memory, void *residual, double t, void *y, void *slope);
 int IDASetId(void *memory, void *differential);
 int IDASetSuppressAlg(void *memory, int suppress);
+int IDASetJacFn(void *memory, void *system);
 int IDAGetNumResEvals(void *memory, long *count);
-int IDAGetNumLinResEvals(void *memory, long *count);
 int IDASolve(void *memory, double until, double *t, void *y, void *slope, int task);
 """,
 }
@@ -65,6 +67,11 @@ FILES = {"CVode": "_cy_cvode*", "IDA": "_cy_ida*"}
 
 MAJOR = 7
 """The generation of SUNDIALS whose interface this is."""
+
+OPERATIONS = ("GetType", "GetID", "Solve")
+"""Of its dense linear solver: those that another one needs too."""
+MEMBERS, TABLE = 3, 12
+"""How far into a solver to look for the table of its operations, and into that for one of them."""
 
 
 @dataclass(frozen=True)
@@ -74,6 +81,8 @@ class Sundials:
     ffi: cffi.FFI
     lib: Any
     prefix: str
+    table: int
+    places: dict[str, int]
 
     def address(self, name: str) -> int:
         """Address of a function of the library."""
@@ -82,6 +91,15 @@ class Sundials:
     def call(self, name: str) -> Any:
         """The integrator's function of that name, without its prefix."""
         return getattr(self.lib, f"{self.prefix}{name}")
+
+    def solver(self, solve: Any, content: Any, context: Any) -> Any:
+        """A direct linear solver whose system is factored elsewhere; `solve` finds `content` where it points to."""
+        made = self.lib.SUNLinSolNewEmpty(context)
+        operations = self.ffi.cast("void **", made[self.table])
+        for name in ("GetType", "GetID"):
+            operations[self.places[name]] = self.ffi.cast("void *", self.address(f"SUNLinSol{name}_Dense"))
+        operations[self.places["Solve"]], made[0] = solve, content
+        return made
 
 
 @lru_cache(maxsize=2)
@@ -100,8 +118,34 @@ def sundials(prefix: str) -> Sundials | None:
             lib: Any = ffi.dlopen(str(path))
             version, label = ffi.new("int[3]"), ffi.new("char[32]")
             lib.SUNDIALSGetVersionNumber(version, version + 1, version + 2, label, 32)
-            if version[0] == MAJOR and all(hasattr(lib, name) for name in (f"{prefix}Init", "SUNLinSol_SPGMR")):
-                return Sundials(ffi, lib, prefix)
+            if version[0] == MAJOR and hasattr(lib, f"{prefix}Init"):
+                found = _places(ffi, lib)
+                if found is not None:
+                    return Sundials(ffi, lib, prefix, *found)
         except (OSError, AttributeError):
             continue
     return None
+
+
+def _places(ffi: cffi.FFI, lib: Any) -> tuple[int, dict[str, int]] | None:
+    """Where a linear solver has the table of its operations, and where that has some: looked for in one that is known,
+    since they move from version to version."""
+    context, one = ffi.new("void **"), ffi.new("double[1]")
+    lib.SUNContext_Create(0, context)
+    vector, matrix = lib.N_VMake_Serial(1, one, context[0]), lib.SUNDenseMatrix(1, 1, context[0])
+    known = lib.SUNLinSol_Dense(vector, matrix, context[0])
+    wanted = {name: ffi.cast("void *", getattr(lib, f"SUNLinSol{name}_Dense")) for name in OPERATIONS}
+    found = None
+    for member in range(1, MEMBERS):  # the first is its content, the last its context
+        operations = ffi.cast("void **", known[member])
+        if operations == ffi.NULL or operations[0] != wanted["GetType"]:
+            continue
+        table = [operations[i] for i in range(TABLE)]
+        if all(address in table for address in wanted.values()):
+            found = member, {name: table.index(address) for name, address in wanted.items()}
+            break
+    lib.SUNLinSolFree(known)
+    lib.SUNMatDestroy(matrix)
+    lib.N_VDestroy(vector)
+    lib.SUNContext_Free(context)
+    return found
