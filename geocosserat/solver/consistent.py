@@ -3,7 +3,6 @@
 import numpy as np
 
 from geocosserat.kernel.contract import Array, Kernel
-from geocosserat.solver.settings import DENSE_LIMIT
 
 SOLVED = 1e-6
 """Of what constraints were violated by; where more is left, the kernel's elimination was too inaccurate."""
@@ -12,7 +11,7 @@ SOLVED = 1e-6
 def consistent(kernel: Kernel, t: float, y: Array, blocks: bool = False) -> Array:
     """`y` with its algebraic entries such that the constraints hold at t.
 
-    blocks: large systems may use the kernel's elimination, which forgets what it was last prepared and factored for.
+    blocks: the kernel's elimination may be used, which forgets what it was last prepared and factored for.
 
     Raises numpy.linalg.LinAlgError if they have no solution.
     """
@@ -22,7 +21,7 @@ def consistent(kernel: Kernel, t: float, y: Array, blocks: bool = False) -> Arra
         return y
     gap = np.empty_like(y)
     kernel.rate(t, y, gap)
-    if blocks and kernel.size > DENSE_LIMIT:
+    if blocks:
         found, left, change = y.copy(), np.empty_like(y), np.empty_like(y)
         kernel.prepare(t, y)
         kernel.factor(0.0)  # leaves what moves as it is

@@ -2,8 +2,8 @@
 
 import sys
 
-DENSE_LIMIT = 80
-"""Largest state that is solved with dense matrices (benchmarks/linear_solvers.py)."""
+DENSE_LIMIT = 300
+"""Largest state of a kernel in numpy that is solved with dense matrices (benchmarks/linear_solvers.py)."""
 
 KRYLOV = 10
 """Krylov vectors that GMRES may keep; with the exact preconditioner it needs one or two."""

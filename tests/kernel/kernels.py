@@ -145,11 +145,8 @@ def eliminated(case: Case, blocks: tuple[Array, Array, Array]) -> Array:
 
 
 def implicit(case: Case, J: Array, gamma: float) -> Array:
-    """mask - gamma J, what the block solve is the inverse of: rows of frozen modes are those of J, entries behind the
-    turn are left as they are."""
-    matrix, m = np.eye(len(J)), turns(case)
-    matrix[:m, :m] -= gamma * J[:m, :m]
+    """mask - gamma J, what the block solve is the inverse of: rows of frozen modes are those of J."""
     held = np.flatnonzero(rod(*case[:3]).algebraic)
-    matrix[held] = 0
-    matrix[held, :m] = J[held, :m]
+    matrix = np.eye(len(J)) - gamma * J
+    matrix[held] = J[held]
     return matrix

@@ -1,4 +1,4 @@
-"""A compiled kernel as SUNDIALS calls it: the same rate, Jacobian, factors and solves, through addresses."""
+"""A compiled kernel as SUNDIALS calls it: the same rate, factors and solves, through addresses."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from geocosserat.conductor import kernel_text
 from geocosserat.kernel.contract import NativeKernel
 from geocosserat.kernel.native import NativeRod
 from tests.discretisation.rods import FROZEN, rod
-from tests.kernel.kernels import Case, T, cases, implicit, kernel, rate, state
+from tests.kernel.kernels import Case, T, cases, kernel, rate, state
 
 Array = NDArray[np.float64]
 CASES = [case for case in cases(("c",)) if case.name.split()[1] in ("everything", "hung", "plain", "reeled", "ring")]
@@ -21,13 +21,14 @@ CONSTRAINED = [case for case in cases(("c",)) if case.name in FROZEN]
 
 
 class Caller:
-    """Calls a kernel's callbacks with vectors and matrices that are plain arrays: their address is their data."""
+    """Calls a kernel's callbacks with vectors that are plain arrays: their address is their data."""
 
-    def __init__(self, k: NativeRod, dense: bool) -> None:
+    def __init__(self, k: NativeRod) -> None:
         self.ffi = ffi = cffi.FFI()
         self.data = ffi.callback("double *(void *)", lambda thing: ffi.cast("double *", thing))
         address = int(ffi.cast("uintptr_t", self.data))
-        self.callbacks = k.callbacks(address, address, dense)
+        self.callbacks = k.callbacks(address)
+        self.solver = ffi.new("void *[2]", [self.problem, ffi.NULL])
 
     def at(self, array: Array) -> Any:
         return self.ffi.cast("void *", array.ctypes.data)
@@ -42,44 +43,26 @@ class Caller:
     def rate(self, t: float, y: Array, out: Array) -> int:
         return int(self.function("rate", "double, void *, void *, void *")(t, self.at(y), self.at(out), self.problem))
 
-    def jacobian(self, t: float, y: Array) -> Array:
-        J, none = np.full((len(y), len(y)), np.nan), self.ffi.NULL
-        call = self.function("jacobian", "double, void *, void *, void *, void *, void *, void *, void *")
-        assert call(t, self.at(y), none, self.at(J), self.problem, none, none, none) == 0
-        return J.T  # SUNDIALS stores columns
-
-    def setup(self, t: float, y: Array, usable: bool, gamma: float) -> tuple[int, bool]:
-        renewed = self.ffi.new("int *", -1)
-        call = self.function("setup", "double, void *, void *, int, int *, double, void *")
-        code = call(t, self.at(y), self.ffi.NULL, usable, renewed, gamma, self.problem)
+    def system(self, t: float, y: Array, usable: bool, gamma: float) -> tuple[int, bool]:
+        renewed, none = self.ffi.new("int *", -1), self.ffi.NULL
+        call = self.function("system", "double, void *, void *, void *, int, int *, double" + ", void *" * 4)
+        code = call(t, self.at(y), none, none, usable, renewed, gamma, self.problem, none, none, none)
         return int(code), bool(renewed[0])
 
-    def solve(self, b: Array) -> Array:
-        out, none = np.full_like(b, np.nan), self.ffi.NULL
-        call = self.function("solve", "double, void *, void *, void *, void *, double, double, int, void *")
-        assert call(0.0, none, none, self.at(b), self.at(out), 0.0, 0.0, 1, self.problem) == 0
+    def solve(self, b: Array, name: str = "solve") -> Array:
+        out = np.full_like(b, np.nan)
+        call = self.function(name, "void *, void *, void *, void *, double")
+        assert call(self.solver, self.ffi.NULL, self.at(out), self.at(b), 0.0) == 0
         return out
 
     def residual(self, t: float, y: Array, slope: Array, out: Array) -> int:
         call = self.function("residual", "double, void *, void *, void *, void *")
         return int(call(t, self.at(y), self.at(slope), self.at(out), self.problem))
 
-    def residual_jacobian(self, t: float, c: float, y: Array) -> Array:
-        J, none = np.full((len(y), len(y)), np.nan), self.ffi.NULL
-        call = self.function("residual_jacobian", "double, double" + ", void *" * 8)
-        assert call(t, c, self.at(y), none, none, self.at(J), self.problem, none, none, none) == 0
-        return J.T
-
-    def residual_setup(self, t: float, y: Array, c: float) -> int:
+    def residual_system(self, t: float, y: Array, c: float) -> int:
         none = self.ffi.NULL
-        call = self.function("residual_setup", "double, void *, void *, void *, double, void *")
-        return int(call(t, self.at(y), none, none, c, self.problem))
-
-    def residual_solve(self, b: Array, c: float) -> Array:
-        out, none = np.full_like(b, np.nan), self.ffi.NULL
-        call = self.function("residual_solve", "double" + ", void *" * 5 + ", double, double, void *")
-        assert call(0.0, none, none, none, self.at(b), self.at(out), c, 0.0, self.problem) == 0
-        return out
+        call = self.function("residual_system", "double, double" + ", void *" * 8)
+        return int(call(t, c, self.at(y), none, none, none, self.problem, none, none, none))
 
 
 def native(case: Case) -> NativeRod:
@@ -90,22 +73,20 @@ def native(case: Case) -> NativeRod:
 
 
 @pytest.mark.parametrize("case", CASES, ids=str)
-def test_callbacks_give_the_rate_and_the_jacobian_of_the_kernel(case: Case) -> None:
-    """Digit for digit, the matrix by columns."""
-    k, y = native(case), state(case, 1)
-    caller, out = Caller(k, dense=True), np.empty(len(state(case, 1)))
-    assert caller.rate(T, y, out) == 0
+def test_the_callback_gives_the_rate_of_the_kernel(case: Case) -> None:
+    """Digit for digit."""
+    y, out = state(case, 1), np.empty(len(state(case, 1)))
+    assert Caller(native(case)).rate(T, y, out) == 0
     np.testing.assert_array_equal(out, rate(case, T, y))
-    np.testing.assert_array_equal(caller.jacobian(T, y), k.jacobian(T, y))
 
 
 @pytest.mark.parametrize("case", CASES, ids=str)
-def test_the_preconditioner_is_the_block_solve_of_the_state_it_was_made_at(case: Case) -> None:
+def test_the_system_is_solved_with_the_blocks_of_the_state_it_was_made_at(case: Case) -> None:
     """A Jacobian said to be usable is kept, another step only factors it again; and it says which of both it did."""
     k, y, b = native(case), state(case, 1), state(case, 2)
-    caller, wanted = Caller(k, dense=False), np.empty(len(b))
+    caller, wanted = Caller(k), np.empty(len(b))
     for at, usable, gamma in ((y, False, 0.1), (state(case, 3), True, 0.1), (state(case, 3), True, 0.7)):
-        assert caller.setup(T, at, usable, gamma) == (0, not usable)
+        assert caller.system(T, at, usable, gamma) == (0, not usable)
         found = caller.solve(b)
         k.prepare(T, y)
         k.factor(gamma)
@@ -115,23 +96,23 @@ def test_the_preconditioner_is_the_block_solve_of_the_state_it_was_made_at(case:
 
 @pytest.mark.parametrize("case", CASES[:1], ids=str)
 def test_a_rate_that_is_not_finite_asks_for_a_smaller_step(case: Case) -> None:
-    """A positive code is "recoverable" to SUNDIALS; a singular preconditioner likewise."""
+    """A positive code is "recoverable" to SUNDIALS; a singular system likewise."""
     k, y = native(case), state(case, 1)
     out = np.empty(len(y))
     for bad in (np.nan, np.inf, -np.inf):
         broken = y.copy()
         broken[0] = bad
-        assert Caller(k, dense=True).rate(T, broken, out) == 1
-        code, _ = Caller(k, dense=False).setup(T, broken, False, 0.1)
+        assert Caller(k).rate(T, broken, out) == 1
+        code, _ = Caller(k).system(T, broken, False, 0.1)
         assert code >= 0
-    assert Caller(k, dense=True).rate(T, y, out) == 0
+    assert Caller(k).rate(T, y, out) == 0
 
 
 @pytest.mark.parametrize("case", [c for c in CASES if c.name not in FROZEN], ids=str)
 def test_only_a_rod_with_frozen_modes_has_residuals(case: Case) -> None:
     """The others are ordinary: their addresses are 0, and nothing of the kind is in their kernel."""
-    found = Caller(native(case), dense=True).callbacks
-    assert (found.residual, found.residual_jacobian, found.residual_setup, found.residual_solve) == (0, 0, 0, 0)
+    found = Caller(native(case)).callbacks
+    assert (found.residual, found.residual_system, found.residual_solve) == (0, 0, 0)
     assert "residual" not in kernel_text(rod(*case[:3]).structure).c
 
 
@@ -139,7 +120,7 @@ def test_only_a_rod_with_frozen_modes_has_residuals(case: Case) -> None:
 def test_the_residual_is_the_slope_less_the_rate_and_of_frozen_modes_the_constraint(case: Case) -> None:
     """Digit for digit; a rate that is not finite asks for a smaller step."""
     y, slope, out = state(case, 1), state(case, 2), np.empty(len(state(case, 1)))
-    caller = Caller(native(case), dense=True)
+    caller = Caller(native(case))
     assert caller.residual(T, y, slope, out) == 0
     held, f = rod(*case[:3]).algebraic == 1, rate(case, T, y)
     assert 0 < held.sum() < len(y)
@@ -149,23 +130,14 @@ def test_the_residual_is_the_slope_less_the_rate_and_of_frozen_modes_the_constra
 
 
 @pytest.mark.parametrize("case", CONSTRAINED, ids=str)
-def test_the_jacobian_of_the_residual_is_that_of_what_it_says(case: Case) -> None:
-    """With the slope a multiple c of the state, as IDA has it: c - df/dy, and df/dy of frozen modes."""
-    k, y, c = native(case), state(case, 1), 7.0
-    J, held = k.jacobian(T, y), rod(*case[:3]).algebraic == 1
-    wanted = np.where(held[:, None], J, c * np.eye(len(y)) - J)
-    np.testing.assert_array_equal(Caller(k, dense=True).residual_jacobian(T, c, y), wanted)
-
-
-@pytest.mark.parametrize("case", CONSTRAINED, ids=str)
 @pytest.mark.parametrize("c", [0.5, 30.0])
-def test_the_preconditioner_of_the_residual_is_the_block_solve_of_its_jacobian(case: Case, c: float) -> None:
-    """Of the turns and stresses; of what stands behind them c alone."""
+def test_the_system_of_the_residual_is_its_jacobian(case: Case, c: float) -> None:
+    """With the slope a multiple c of the state, as IDA has it: c - df/dy, and df/dy of frozen modes."""
     k, y, b = native(case), state(case, 1), state(case, 2)
-    caller = Caller(k, dense=False)
-    assert caller.residual_setup(T, y, c) == 0
-    held = rod(*case[:3]).algebraic == 1
-    found, matrix = caller.residual_solve(b, c), implicit(case, k.jacobian(T, y), 1 / c)
-    wanted = np.linalg.solve(matrix, np.where(held, b, b / c))
+    caller = Caller(k)
+    assert caller.residual_system(T, y, c) == 0
+    J, held = k.jacobian(T, y), rod(*case[:3]).algebraic == 1
+    matrix = np.where(held[:, None], J, c * np.eye(len(y)) - J)
+    found, wanted = caller.solve(b, "residual_solve"), np.linalg.solve(matrix, b)
     accuracy = max(1e-11, 1e-16 * np.linalg.cond(matrix))
     np.testing.assert_allclose(found, wanted, rtol=0, atol=accuracy * np.abs(wanted).max())

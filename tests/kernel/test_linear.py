@@ -18,9 +18,9 @@ ids = pytest.mark.parametrize("case", cases(), ids=str)
 
 
 @ids
-@pytest.mark.parametrize("gamma", [1e-4, 0.3, -0.2, 50.0])
+@pytest.mark.parametrize("gamma", [1e-4, 0.3, -0.2, 10.0])
 def test_a_block_solve_is_the_dense_solve(case: Case, gamma: float) -> None:
-    """For any step, at a random state, where the matrix is decently conditioned; of rings too."""
+    """For any step, at a random state, where the matrix is decently conditioned; rings and carried poses too."""
     k, y, b = kernel(case), state(case, 1), state(case, 2)
     matrix = implicit(case, k.jacobian(T, y), gamma)
     out = np.full_like(b, np.nan)
@@ -31,7 +31,7 @@ def test_a_block_solve_is_the_dense_solve(case: Case, gamma: float) -> None:
     condition = np.linalg.cond(matrix)
     assert condition < 1e7
     np.testing.assert_allclose(out, wanted, rtol=0, atol=max(1e-11, 1e-16 * condition) * np.abs(wanted).max())
-    np.testing.assert_array_equal(out[turns(case) :], b[turns(case) :])
+    np.testing.assert_array_equal(out[-2:], b[-2:])
 
 
 @pytest.mark.parametrize("case", [c for c in cases() if c.name.endswith(("everything", "reeled", "ring"))], ids=str)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from geocosserat.solver import cvode, session
+from geocosserat.solver import cvode, integrate
 from tests.physics.scenes import Array, Scene, changed, example, simulate, tip
 
 SCENES = {name: changed(example(name), {"run.until": until}) for name, until in (("follower", 0.3), ("sinking", 0.02))}
@@ -41,20 +41,28 @@ def test_numpy_gives_what_c_gives(scene: Scene, method: str) -> None:
     np.testing.assert_allclose(numpy, c, rtol=0, atol=1e-9)
 
 
-@pytest.mark.parametrize("backend", ["numpy", "c"])
 @pytest.mark.parametrize("scene", [SCENES["sinking"], CURLED], ids=["sinking", "curled"])
-def test_dense_and_block_elimination_agree(
-    scene: Scene, backend: str, request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_dense_and_block_elimination_agree(scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
     """The same rod with dense matrices and with the kernel's own elimination as preconditioner, on three elements."""
-    if backend == "c":
-        request.getfixturevalue("c_compiler")
     tips, steps = [], []
     for limit in (10_000, 0):
         monkeypatch.setattr(cvode, "DENSE_LIMIT", limit)
-        monkeypatch.setattr(session, "DENSE_LIMIT", limit)
-        run = simulate(scene, 3, 6, 1e-9, backend)
+        run = simulate(scene, 3, 6, 1e-9, "numpy")
         tips.append(tip(run))
         steps.append(run.evaluations["steps"])
     np.testing.assert_allclose(tips[0], tips[1], rtol=0, atol=1e-7)
     assert steps[1] < 2 * steps[0] + 50
+
+
+@pytest.mark.usefixtures("c_compiler")
+@pytest.mark.parametrize("elements", [1, 3])
+@pytest.mark.parametrize("scene", [SCENES["sinking"], CURLED], ids=["sinking", "curled"])
+def test_sundials_called_directly_gives_what_it_gives_through_its_binding(
+    scene: Scene, elements: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """There its own matrices are used, here the kernel's blocks; with about as many steps."""
+    here = simulate(scene, elements, 6, 1e-9, "c")
+    monkeypatch.setattr(integrate, "sundials", lambda _: None)
+    there = simulate(scene, elements, 6, 1e-9, "c")
+    np.testing.assert_allclose(tip(here), tip(there), rtol=0, atol=1e-7)
+    assert here.evaluations["steps"] < 1.2 * there.evaluations["steps"] + 50

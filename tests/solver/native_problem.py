@@ -16,8 +16,8 @@ from tests.solver.problems import Array, constrained, forced_rates
 STRUCT = """
 typedef struct {
     int size, calls;
-    double bad, latest, gamma, *rates;
-    double *(*vector)(void *), *(*matrix)(void *);
+    double bad, latest, gamma, *rates, *at;
+    double *(*vector)(void *);
 } problem;
 """
 SOURCE = rf"""
@@ -37,25 +37,16 @@ int rate(double t, void *y, void *out, void *data)
     r[p->size - 1] = NAN;
     return 1;
 }}
-int jacobian(double t, void *y, void *r, void *J, void *data, void *a, void *b, void *c)
-{{
-    problem *p = data;
-    double *columns = p->matrix(J);
-    for (int i = 0; i < p->size * p->size; ++i)
-        columns[i] = 0.0;
-    for (int i = 0; i < p->size; ++i)
-        columns[i * p->size + i] = -p->rates[i];
-    return 0;
-}}
-int setup(double t, void *y, void *r, int usable, int *renewed, double gamma, void *data)
+int system(double t, void *y, void *r, void *none, int usable, int *renewed, double gamma, void *data,
+           void *a, void *b, void *c)
 {{
     ((problem *)data)->gamma = gamma;
     *renewed = !usable;
     return 0;
 }}
-int solve(double t, void *y, void *r, void *b, void *x, double gamma, double tolerance, int side, void *data)
+int solve(void *solver, void *none, void *x, void *b, double tolerance)
 {{
-    problem *p = data;
+    problem *p = *(problem **)solver;
     for (int i = 0; i < p->size; ++i)
         p->vector(x)[i] = p->vector(b)[i] / (1.0 + p->gamma * p->rates[i]);
     return 0;
@@ -76,31 +67,20 @@ int residual(double t, void *y, void *yp, void *out, void *data)
     p->latest = fmax(p->latest, t);
     return t <= p->bad ? 0 : 1;
 }
-int residual_jacobian(double t, double c, void *y, void *yp, void *r, void *J, void *data, void *a1, void *a2, void *a3)
+int residual_system(double t, double c, void *y, void *yp, void *r, void *none, void *data,
+                    void *a1, void *a2, void *a3)
 {
     problem *p = data;
-    const int n = p->size, m = n / 2;
-    double *columns = p->matrix(J), *x = p->vector(y);
-    for (int i = 0; i < n * n; ++i)
-        columns[i] = 0.0;
-    for (int i = 0; i < m; ++i) {
-        columns[i * n + i] = c + p->rates[i];
-        columns[(m + i) * n + i] = -p->rates[i];
-        columns[i * n + m + i] = 2.0 * x[i] * (x[m + i] - cos(t));
-        columns[(m + i) * n + m + i] = 1.0 + x[i] * x[i];
-    }
+    for (int i = 0; i < p->size / 2; ++i)
+        p->at[i] = p->vector(y)[i];
+    p->gamma = c;
     return 0;
 }
-int residual_setup(double t, void *y, void *yp, void *r, double c, void *data)
+int residual_solve(void *solver, void *none, void *z, void *b, double tolerance)
 {
-    ((problem *)data)->gamma = c;
-    return 0;
-}
-int residual_solve(double t, void *y, void *yp, void *r, void *b, void *z, double c, double tolerance, void *data)
-{
-    problem *p = data;
+    problem *p = *(problem **)solver;
     const int m = p->size / 2;
-    double *x = p->vector(y), *right = p->vector(b), *out = p->vector(z);
+    double *x = p->at, *right = p->vector(b), *out = p->vector(z);
     for (int i = 0; i < m; ++i) {
         out[m + i] = right[m + i] / (1.0 + x[i] * x[i]);
         out[i] = (right[i] + p->rates[i] * out[m + i]) / (p->gamma + p->rates[i]);
@@ -110,13 +90,11 @@ int residual_solve(double t, void *y, void *yp, void *r, void *b, void *z, doubl
 """
 DECLARATIONS = f"""
 {STRUCT}int rate(double, void *, void *, void *);
-int jacobian(double, void *, void *, void *, void *, void *, void *, void *);
-int setup(double, void *, void *, int, int *, double, void *);
-int solve(double, void *, void *, void *, void *, double, double, int, void *);
+int system(double, void *, void *, void *, int, int *, double, void *, void *, void *, void *);
+int solve(void *, void *, void *, void *, double);
 int residual(double, void *, void *, void *, void *);
-int residual_jacobian(double, double, void *, void *, void *, void *, void *, void *, void *, void *);
-int residual_setup(double, void *, void *, void *, double, void *);
-int residual_solve(double, void *, void *, void *, void *, void *, double, double, void *);
+int residual_system(double, double, void *, void *, void *, void *, void *, void *, void *, void *);
+int residual_solve(void *, void *, void *, void *, double);
 """
 
 
@@ -141,17 +119,18 @@ class NativeForced:
         self._rates = forced_rates(size)
         self.problem = ffi.new("problem *")
         self.problem.size, self.problem.bad = size, bad
+        self._at = np.empty(size)
         self.problem.rates = ffi.cast("double *", self._rates.ctypes.data)
+        self.problem.at = ffi.cast("double *", self._at.ctypes.data)
 
-    def callbacks(self, vector: int, matrix: int, dense: bool) -> Callbacks:
+    def callbacks(self, vector: int) -> Callbacks:
         ffi = self._ffi
         self.problem.vector = ffi.cast("double *(*)(void *)", vector)
-        self.problem.matrix = ffi.cast("double *(*)(void *)", matrix)
 
         def address(pointer: Any) -> int:
             return int(ffi.cast("uintptr_t", pointer))
 
-        functions = (getattr(self._lib, name) for name in ("rate", "jacobian", "setup", "solve"))
+        functions = (getattr(self._lib, name) for name in ("rate", "system", "solve"))
         return Callbacks(address(self.problem), *map(address, functions), keep=self)
 
     @property
@@ -174,10 +153,10 @@ class NativeConstrained(NativeForced):
     def algebraic(self) -> Array:
         return self._python.algebraic
 
-    def callbacks(self, vector: int, matrix: int, dense: bool) -> Callbacks:
-        names = ("residual", "residual_jacobian", "residual_setup", "residual_solve")
+    def callbacks(self, vector: int) -> Callbacks:
+        names = ("residual", "residual_system", "residual_solve")
         found = {name: int(self._ffi.cast("uintptr_t", getattr(self._lib, name))) for name in names}
-        return replace(super().callbacks(vector, matrix, dense), **found)
+        return replace(super().callbacks(vector), **found)
 
     def rate(self, t: float, y: Array, out: Array) -> None:
         self._python.rate(t, y, out)

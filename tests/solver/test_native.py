@@ -46,11 +46,13 @@ def test_a_compiled_problem_is_integrated_without_python(library: Path, size: in
 
 @pytest.mark.parametrize("size", SIZES)
 def test_both_ways_into_cvode_take_the_same_steps(library: Path, size: int) -> None:
-    """The same method with the same settings: equal states to round-off, equal numbers of rates."""
+    """The same method with the same settings: equal states to round-off, and equal numbers of rates where both solve
+    directly (GMRES of large systems takes some more)."""
     native = integrate(NativeForced(library, size), np.ones(size), TIMES, "cvode", 1e-8, 1e-10)
     python = integrate(forced(size), np.ones(size), TIMES, "cvode", 1e-8, 1e-10)
     np.testing.assert_allclose(native.states, python.states, atol=1e-10)
-    assert abs(native.rates - python.rates) <= 0.1 * native.rates
+    assert abs(native.steps - python.steps) <= 0.1 * native.steps
+    assert abs(native.rates - python.rates) <= 0.1 * native.rates or size > DENSE_LIMIT
 
 
 def test_without_the_library_python_takes_over(library: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -83,7 +85,7 @@ def test_a_rate_that_cannot_be_evaluated_at_the_start_is_said_so(library: Path, 
 
 @pytest.mark.parametrize("size", SIZES)
 def test_a_compiled_problem_with_constraints_is_integrated_without_python(library: Path, size: int) -> None:
-    """By IDA, dense or with its preconditioner: what moves to the closed solution, what is fixed to its constraint."""
+    """By IDA: what moves to the closed solution, what is fixed to its constraint."""
     problem = NativeConstrained(library, size)
     start = np.concatenate([np.full(size, 2.0), np.full(size, 77.0)])  # what is fixed need not be given
     found = integrate(problem, start, TIMES, "cvode", 1e-9, 1e-11)
