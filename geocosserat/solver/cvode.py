@@ -17,7 +17,7 @@ from sksundae.cvode import CVODE, CVODEPrecond
 
 from geocosserat.kernel.contract import Array, Kernel
 from geocosserat.solver.counted import Counted
-from geocosserat.solver.settings import BREATH, DENSE_LIMIT, KRYLOV, STEP_LIMIT, stands_still
+from geocosserat.solver.settings import BREATH, DENSE_LIMIT, KRYLOV, hopeless, stands_still
 from geocosserat.solver.trajectory import Frame, Progress, Trajectory
 
 TOO_MUCH_WORK = -1
@@ -57,9 +57,13 @@ def cvode(
         if result.status == TOO_MUCH_WORK:
             progress((t - times[0]) / (times[-1] - times[0]), counted.instants)
             breaths += 1
-            if not stands_still(before, t, BREATH) and breaths * BREATH < STEP_LIMIT:
+            fraction = (t - times[0]) / (times[-1] - times[0])
+            if stands_still(before, t, BREATH):
+                reason = f"CVODE stopped at t = {t:.6g}: its steps go nowhere; the motion may be singular here"
+                break
+            if not hopeless(breaths * BREATH, fraction):
                 continue
-            reason = f"CVODE stopped at t = {t:.6g}: its steps go nowhere; the motion may be singular here"
+            reason = f"CVODE stopped at t = {t:.6g}: {breaths * BREATH} steps did not reach the end"
             break
         if not result.success:
             reason = f"CVODE stopped at t = {t:.6g}: {result.message}"

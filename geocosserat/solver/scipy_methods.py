@@ -12,7 +12,7 @@ from scipy.integrate import BDF, LSODA, OdeSolver, Radau
 
 from geocosserat.kernel.contract import Array, Kernel
 from geocosserat.solver.counted import Counted
-from geocosserat.solver.settings import STEP_LIMIT, stands_still
+from geocosserat.solver.settings import hopeless, stands_still
 from geocosserat.solver.trajectory import Frame, Progress, Trajectory
 
 LEAST_RTOL = 100 * float(np.finfo(float).eps)
@@ -47,8 +47,8 @@ def _integrate(
     except (ArithmeticError, np.linalg.LinAlgError) as error:
         return Trajectory(times[:1].copy(), states[:1], counted.rates, counted.jacobians, 0, False, str(error))
     while solver.status == "running" and done < len(times):
-        if steps == STEP_LIMIT:
-            reason = f"{method.__name__} stopped at t = {solver.t:.6g}: {STEP_LIMIT} steps did not reach the end"
+        if hopeless(steps, (solver.t - times[0]) / (times[-1] - times[0])):
+            reason = f"{method.__name__} stopped at t = {solver.t:.6g}: {steps} steps did not reach the end"
             break
         try:
             message = solver.step()

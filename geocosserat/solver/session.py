@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from geocosserat.kernel.contract import Array, Kernel, NativeKernel
-from geocosserat.solver.settings import BREATH, STEP_LIMIT, stands_still
+from geocosserat.solver.settings import BREATH, NEWTON, hopeless, stands_still
 from geocosserat.solver.sundials import Sundials
 from geocosserat.solver.trajectory import Frame, Progress, Trajectory
 
@@ -48,6 +48,9 @@ class Session(ABC):
         self.matrix = lib.SUNDenseMatrix(1, 1, self.context)
         self._check(call("SetLinearSolver")(self.memory, self.solver, self.matrix))
         self._check(call(self.system_setter)(self.memory, self.pointer(system)))
+        self._check(call("SetNonlinConvCoef")(self.memory, NEWTON))
+        # SUNDIALS would shrink or stretch what an older step size gives, energies and all, which are exact as they are
+        self._check(call("SetLinearSolutionScaling")(self.memory, 0))
 
     @abstractmethod
     def create(self, t: float) -> Any:
@@ -112,7 +115,7 @@ class Session(ABC):
                 if stands_still(before, now, BREATH):
                     reason = f"{self.name} stopped at t = {now:.6g}: its steps go nowhere; {SINGULAR}"
                     break
-                if steps < STEP_LIMIT:
+                if not hopeless(steps, (now - first) / (last - first)):
                     continue
                 reason = f"{self.name} stopped at t = {now:.6g}: {steps} steps did not reach the end"
                 break

@@ -39,6 +39,8 @@ int {0}SetUserData(void *memory, void *data);
 int {0}SetMaxNumSteps(void *memory, long steps);
 int {0}SetStopTime(void *memory, double t);
 int {0}SetLinearSolver(void *memory, solver, void *matrix);
+int {0}SetLinearSolutionScaling(void *memory, int on);
+int {0}SetNonlinConvCoef(void *memory, double share);
 int {0}GetNumSteps(void *memory, long *count);
 int {0}GetNumJacEvals(void *memory, long *count);
 char *{0}GetReturnFlagName(long flag);

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from geocosserat.solver import settings
 from geocosserat.solver.integrate import METHODS, integrate
 from geocosserat.solver.settings import DENSE_LIMIT
 from geocosserat.solver.trajectory import Trajectory
@@ -161,3 +162,15 @@ def test_failing_prints_nothing(method: str, capfd: pytest.CaptureFixture[str]) 
     """Standard output belongs to results and standard error to the one message: libraries below must keep quiet."""
     _run(_after(forced(7), np.nan, slice(None)), method)
     assert capfd.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_run_may_take_long_if_it_gets_on_but_not_for_ever(method: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """After so many steps it goes on as long as at this pace all of it takes no more than the longest may."""
+    monkeypatch.setattr(settings, "STEP_LIMIT", 600)
+    for longest, reached in ((10**6, True), (1000, False)):
+        monkeypatch.setattr(settings, "LONGEST", longest)
+        found = integrate(forced(7), np.ones(7), np.array([0.0, 200.0]), method, 1e-7, 1e-9)
+        assert found.reached == reached
+        assert found.steps > (1000 if reached else 599)
+        assert reached or "steps did not reach the end" in found.reason
