@@ -12,6 +12,7 @@ import numpy as np
 
 from geocosserat.accuracy import DEFAULT_ACCURACY, Setting, ladder, position_gap, sees_all
 from geocosserat.discretisation.mesh import Array, Mesh
+from geocosserat.discretisation.sampling import frictionless, left_of_friction
 from geocosserat.discretisation.semidiscrete import SemiDiscrete, discretise
 from geocosserat.discretisation.structure import RodStructure
 from geocosserat.kernel.library import KernelText
@@ -159,6 +160,8 @@ class Simulation:
         before: tuple[Mesh, Array] | None = None
         estimate: float | None = None
         settings = ladder(accuracy)
+        # of the model itself: rotations without friction keep a little of it
+        modelled = left_of_friction(self.scene.run) if frictionless(self.scene.model) else 0.0
         for rung, setting in enumerate(settings):
             if resumed is not None and rung < resumed.rung:
                 if rung == resumed.rung - 1 and resumed.before.size:
@@ -173,7 +176,7 @@ class Simulation:
             positions = now.rod.poses(now.trajectory.states[-1], now.trajectory.times[-1]).position
             if before is not None:
                 gap = position_gap(*before, now.rod.mesh, positions)
-                estimate = max(gap, drift(now.rod, now.trajectory)) / self.scene.model.length
+                estimate = max(gap, drift(now.rod, now.trajectory)) / self.scene.model.length + modelled
                 if estimate <= accuracy:
                     break
             before = now.rod.mesh, positions

@@ -4,12 +4,11 @@ import numpy as np
 
 from geocosserat.discretisation.mesh import Array, Mesh
 from geocosserat.discretisation.pose import Poses
-from geocosserat.discretisation.sampling import QUASI_STATIC, friction_of
+from geocosserat.discretisation.sampling import QUASI_STATIC, friction_of, frictionless
 from geocosserat.model.errors import InputError
-from geocosserat.model.expressions import Number
 from geocosserat.model.records import RodModel
 
-LEAST = 1e3 * QUASI_STATIC
+LEAST = 1e3 * QUASI_STATIC[0]
 """Drag of a motion, relative to that along the rod, below which only what replaces no friction resists it."""
 
 
@@ -22,7 +21,7 @@ def check_feasible(model: RodModel, mesh: Mesh, start: Poses) -> None:
     group = model.group
     if group.rotations == 1:
         return
-    without = [name for name, row in zip(group.twist, model.friction, strict=True) if set(row) <= {Number(0.0)}]
+    without = [group.twist[i] for i in frictionless(model)]
     if not without:
         return
     left = [name for name, held in zip(group.strain, model.held, strict=True) if not held]
@@ -36,7 +35,7 @@ def check_feasible(model: RodModel, mesh: Mesh, start: Poses) -> None:
     motions = _rigid_motions(model, start)
     if motions.size == 0:
         return
-    friction = friction_of(model, mesh)
+    friction = friction_of(model, mesh, QUASI_STATIC[0])
     drag = np.einsum("nik,nij,njl,n->kl", motions, friction, motions, mesh.mass)
     if np.linalg.eigvalsh(drag)[0] < LEAST * (mesh.mass @ friction[:, 0, 0]):
         raise InputError(

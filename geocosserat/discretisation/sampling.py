@@ -10,7 +10,7 @@ from geocosserat.discretisation.mesh import Array, Mesh
 from geocosserat.discretisation.pose import Poses
 from geocosserat.discretisation.structure import Coefficient, RodStructure
 from geocosserat.model.expressions import Expression, Number, evaluate
-from geocosserat.model.records import RodModel
+from geocosserat.model.records import RodModel, RunSettings, Scene
 
 SLACK = 1e-12
 """How much frozen modes yield where both ends are held, relative to what friction lets them: enough to be unique."""
@@ -18,20 +18,34 @@ SLACK = 1e-12
 PULL = 1e5
 """How fast an end that strayed returns home, relative to how fast the rod relaxes."""
 
-QUASI_STATIC = 1e-10
+QUASI_STATIC = (1e-10, 1e-8)
 """Friction of a rotation that has none, relative to what the other motions of a rod of this length feel.
 
 A balance without friction is the limit of one with ever less; what is left of it shows in the answer as an error of
-this size (docs/method.md), and lets the same kernels serve.
+about this size (docs/method.md), and lets the same kernels serve. Round-off shows the more the less is left: so it is a
+tenth of the accuracy asked for, within these bounds.
 """
+
+
+def frictionless(model: RodModel) -> list[int]:
+    """The rotations that have no friction, as numbers of components of the twist."""
+    rotations = range(model.group.translations, model.group.dimension)
+    return [i for i in rotations if set(model.friction[i]) <= {Number(0.0)}]
+
+
+def left_of_friction(run: RunSettings) -> float:
+    """What is left of the friction of a rotation that has none, for a run with these settings."""
+    asked = [x for x in (run.accuracy, run.rtol) if x is not None]
+    least, most = QUASI_STATIC
+    return min(max(least, 0.1 * min(asked, default=1.0)), most)
 
 
 def along(e: Expression, parameters: Mapping[str, float], u: Array) -> Array:
     return np.broadcast_to(np.asarray(evaluate(e, {**parameters, "u": u}), dtype=float), u.shape)
 
 
-def friction_of(model: RodModel, mesh: Mesh) -> Array:
-    """(nodes, d, d) friction; at a step, averaged over both sides by mass."""
+def friction_of(model: RodModel, mesh: Mesh, left: float) -> Array:
+    """(nodes, d, d) friction; at a step, averaged over both sides by mass. left: of that of a rotation without any."""
     u = mesh.local_nodes()
     d = len(model.friction)
     friction = np.empty((*u.shape, d, d))
@@ -40,15 +54,14 @@ def friction_of(model: RodModel, mesh: Mesh) -> Array:
             friction[..., i, j] = along(model.friction[i][j], model.parameters, u)
     weighted = friction * mesh.reference.masses[:, None, None]
     mean = mesh.gather(weighted) / mesh.mass[:, None, None]
-    for i in range(model.group.translations, d):
-        if all(model.friction[i][j] == Number(0.0) for j in range(d)):
-            mean[:, i, i] = QUASI_STATIC * model.length**2 * mean[:, 0, 0]
+    for i in frictionless(model):
+        mean[:, i, i] = left * model.length**2 * mean[:, 0, 0]
     return mean
 
 
-def sample(structure: RodStructure, model: RodModel, mesh: Mesh, start: Poses) -> tuple[Array, Array, Array]:
-    u, u_point = mesh.u, mesh.u_point
-    friction = friction_of(model, mesh)
+def sample(structure: RodStructure, scene: Scene, mesh: Mesh, start: Poses) -> tuple[Array, Array, Array]:
+    model, u, u_point = scene.model, mesh.u, mesh.u_point
+    friction = friction_of(model, mesh, left_of_friction(scene.run))
     turns = slice(model.group.translations, None)
     matrices = {
         "mobility": np.linalg.inv(friction),

@@ -132,7 +132,7 @@ def discretise(scene: Scene, elements: int, degree: int) -> SemiDiscrete:
         )
     placed = march(mesh, turn, anchor.position, anchor.rotation, anchor.angle, structure.base)
     check_feasible(model, mesh, placed)
-    uniform, point, node = sample(structure, model, mesh, placed)
+    uniform, point, node = sample(structure, scene, mesh, placed)
     carried = np.zeros(structure.carried)
     if structure.carried == 7:
         carried[3] = 1.0  # the quaternion of no rotation
