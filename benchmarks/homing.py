@@ -1,9 +1,12 @@
-"""How far a rod forgets where its far end is held, with and without being drawn back: python -m benchmarks.homing.
+"""How far ends stray from where they belong in many periods: python -m benchmarks.homing [PERIODS ...].
 
-A curled rod in space, clamped at both ends and stirred by a force that turns with it, on the coarse grid of degree 1.
+A curled rod in space, clamped at both ends and stirred by a force that turns with it, with and without its far end
+being drawn back; and a heavy one whose base is driven to and fro. Both on the coarse grid of degree 1.
 """
 
 from __future__ import annotations
+
+import sys
 
 import numpy as np
 
@@ -23,25 +26,36 @@ SCENE = {
     "effects": [{"kind": "follower", "force": ["0", "20*sin(60*t)", "20*cos(60*t)"]}],
     "run": {"until": 1.0, "frames": 2, "elements": 16, "degree": 1, "rtol": 1e-6},
 }
+SHAKEN = {
+    **SCENE,
+    "title": "shaken under its weight",
+    "ends": {
+        "left": {"kind": "driven", "twist": ["0", "0", "24*cos(60*t)", "0", "0", "0"]},
+        "right": {"kind": "free"},
+    },
+    "effects": [{"kind": "weight", "force": [0, 1, -4]}],
+}
 PERIODS = (30, 300)
 
 
-def strayed(periods: int, pull: float) -> float:
-    """Distance of the right end from its place after so many periods, relative to the length."""
+def strayed(scene: dict[str, object], node: int, periods: int, pull: float = sampling.PULL) -> float:
+    """Distance of an end from its place after so many periods, relative to the length."""
     before, sampling.PULL = sampling.PULL, pull
     try:
-        run = geocosserat.run(SCENE, settings=[f"run.until={periods * 2 * np.pi / 60!r}"])
+        run = geocosserat.run(scene, settings=[f"run.until={periods * 2 * np.pi / 60!r}"])
     finally:
         sampling.PULL = before
-    return float(np.linalg.norm(run.solution.position[-1, -1] - run.solution.position[0, -1]))
+    return float(np.linalg.norm(run.solution.position[-1, node] - run.solution.position[0, node]))
 
 
-def table() -> str:
-    """Both ways, in Markdown."""
-    lines = ["| periods | drawn back | left to itself |", "|---|---|---|"]
-    lines += [f"| {n} | {strayed(n, sampling.PULL):.1e} | {strayed(n, 0.0):.1e} |" for n in PERIODS]
+def table(periods: tuple[int, ...] = PERIODS) -> str:
+    """All three, in Markdown."""
+    lines = ["| periods | far end drawn back | left to itself | driven base |", "|---|---|---|---|"]
+    for n in periods:
+        found = strayed(SCENE, -1, n), strayed(SCENE, -1, n, 0.0), strayed(SHAKEN, 0, n)
+        lines.append(f"| {n} | {' | '.join(f'{x:.1e}' for x in found)} |")
     return "\n".join(lines) + "\n"
 
 
 if __name__ == "__main__":
-    print(table())
+    print(table(tuple(map(int, sys.argv[1:])) or PERIODS))

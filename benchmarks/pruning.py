@@ -44,6 +44,18 @@ def scene(motion: str, **changes: Any) -> Scene:
     return load_scene(values)
 
 
+def heavy() -> Iterator[tuple[str, Scene]]:
+    """The same rod in its plane under its weight, by models with ever more in them."""
+    for name, motion, frozen in (
+        ("planar, inextensible and unshearable", "planar", ["h1", "h2"]),
+        ("planar Cosserat", "planar", []),
+        ("Kirchhoff", "spatial", ["h1", "h2", "h3"]),
+        ("spatial Cosserat", "spatial", []),
+    ):
+        force = [5.0, -30.0, 0.0][: 2 if motion == "planar" else 3]
+        yield name, scene(motion, rod={"frozen": frozen}, effects=[{"kind": "weight", "force": force}])
+
+
 def models() -> Iterator[tuple[str, Scene]]:
     """From the smallest to the largest."""
     twist = ["1", "0", "0", BEND, "0", "0"]
@@ -122,6 +134,8 @@ def report() -> str:
     """The tables as Markdown."""
     lines = ["Models of the same rod (operations: of a rate, at a Gauss point and a node)", ""]
     lines += table(models(), "planar, inextensible and unshearable")
+    lines += ["", "The same under its weight, which makes the rod see the world", ""]
+    lines += table(heavy(), "planar, inextensible and unshearable")
     for motion in ("planar", "spatial"):
         lines += ["", f"Effects, one at a time, {motion}", "", *table(with_effects(motion), f"{motion} rod")]
     return "\n".join(lines) + "\n"

@@ -10,11 +10,10 @@ import pytest
 
 from geocosserat.solver import settings
 from geocosserat.solver.integrate import METHODS, integrate
-from geocosserat.solver.settings import DENSE_LIMIT
 from geocosserat.solver.trajectory import Trajectory
 from tests.solver.problems import Array, Problem, forced, forced_solution
 
-SIZES = (7, DENSE_LIMIT + 10)
+SIZES = (7, 30)
 TIMES = np.linspace(0.0, 2.0, 21)
 BAD = 0.5
 """Until this instant all is well."""

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from geocosserat.solver.integrate import METHODS, integrate
-from geocosserat.solver.settings import DENSE_LIMIT
 from tests.solver.problems import (
     ROBERTSON,
     ROBERTSON_END,
@@ -21,7 +20,7 @@ from tests.solver.problems import (
     van_der_pol,
 )
 
-SIZES = (7, DENSE_LIMIT + 10)
+SIZES = (7, 30)
 """One for dense matrices and one for the kernel's own elimination."""
 TIMES = np.array([0.5, 0.500001, 0.6, 1.0, 1.7, 3.0])
 

@@ -11,12 +11,11 @@ import pytest
 from geocosserat.kernel.contract import NativeKernel
 from geocosserat.solver import integrate as door
 from geocosserat.solver.integrate import integrate
-from geocosserat.solver.settings import DENSE_LIMIT
 from geocosserat.solver.sundials import sundials
 from tests.solver.native_problem import NativeConstrained, NativeForced, build
 from tests.solver.problems import forced, forced_solution
 
-SIZES = (7, DENSE_LIMIT + 10)
+SIZES = (7, 30)
 TIMES = np.array([0.0, 1e-6, 0.1, 0.4, 1.0, 2.0])
 
 
