@@ -65,7 +65,7 @@ def integrations(rounds: int = 7) -> dict[str, list[float]]:
     found: dict[str, list[float]] = {"CVODE through scikit-sundae": [], "CVODE called directly": []}
     native = door.sundials
     for _ in range(rounds):
-        for name, library in (("CVODE through scikit-sundae", lambda: None), ("CVODE called directly", native)):
+        for name, library in (("CVODE through scikit-sundae", lambda _: None), ("CVODE called directly", native)):
             door.sundials = library  # type: ignore[assignment]
             start = time.perf_counter()
             done = door.integrate(kernel, rod.state, times, "cvode", 1e-8, 1e-8)
