@@ -162,8 +162,12 @@ def _start_of_tip() -> Array:
     return np.array([0.5 * weight @ np.cos(_bent(u)), 0.5 * weight @ np.sin(_bent(u))])
 
 
-@pytest.mark.parametrize("frozen", [[], ["Pi1"]], ids=["twistable", "untwistable"])
-def test_at_rest_it_is_the_rod_of_kirchhoff(frozen: list[str]) -> None:
+@pytest.mark.parametrize(
+    ("frozen", "friction"),
+    [([], 0.01), (["Pi1"], 0.01), ([], 0)],
+    ids=["twistable", "untwistable", "twistable, without friction of rotations"],
+)
+def test_at_rest_it_is_the_rod_of_kirchhoff(frozen: list[str], friction: float) -> None:
     """Curled at rest, weight, force and torque in the world: pose, bends and all six stresses, to 1e-9."""
     stiffness = (np.inf if frozen else 0.8, 1.2, 1.0)
     base = np.array([0.3, -0.5, 0.8])
@@ -172,7 +176,7 @@ def test_at_rest_it_is_the_rod_of_kirchhoff(frozen: list[str]) -> None:
         (0.2, -0.5, -1.0), (0.3, -0.2, 0.5), Rotation.from_rotvec(base).as_matrix(),
     )  # fmt: skip
     scene = changed(
-        straight([1.0, 1.0, 1.0, 0.8, 1.2, 1.0], [1.0, 2.0, 1.5, 0.01, 0.01, 0.01], length=1.2),
+        straight([1.0, 1.0, 1.0, 0.8, 1.2, 1.0], [1.0, 2.0, 1.5, *[friction] * 3], length=1.2),
         {
             "rod.frozen": ["h1", "h2", "h3", *frozen],
             "rod.reference": ["1", "0", "0", "0.7", "0.5*cos(2*u)", "1 - 0.6*u"],
