@@ -9,7 +9,7 @@ from geocosserat.algebra.exponential import rotation_from_vector
 from geocosserat.discretisation.feasible import check_feasible
 from geocosserat.discretisation.mesh import Array, Mesh, make_mesh
 from geocosserat.discretisation.pose import Poses, cross_matrix, joined, march, plane_rotation
-from geocosserat.discretisation.sampling import along, sample
+from geocosserat.discretisation.sampling import along, frictionless, sample
 from geocosserat.discretisation.structure import RodStructure
 from geocosserat.discretisation.structuring import structure_of
 from geocosserat.model.expressions import Expression, evaluate, jump_positions
@@ -28,6 +28,7 @@ class SemiDiscrete:
     state (size,): the initial state; turn by component (of frozen modes the stress), carried pose, two energies.
     anchor: position and orientation of the end that poses are marched from, at the start.
     rest: the turn at rest, d expressions of u and t, and parameters: their parameters; what frozen modes are held at.
+    quasi_static: whether a rotation has next to no friction, in place of none.
     """
 
     structure: RodStructure
@@ -41,6 +42,7 @@ class SemiDiscrete:
     anchor: Poses
     rest: tuple[Expression, ...]
     parameters: Mapping[str, float]
+    quasi_static: bool
 
     @property
     def unknowns(self) -> int:
@@ -158,4 +160,5 @@ def discretise(scene: Scene, elements: int, degree: int) -> SemiDiscrete:
         anchor=anchor,
         rest=model.reference,
         parameters=model.parameters,
+        quasi_static=bool(frictionless(model)),
     )

@@ -13,9 +13,9 @@ Array = NDArray[np.float64]
 class Callbacks:
     """Addresses of C functions with the signatures of SUNDIALS' callbacks, for integrations that never leave C.
 
-    data: what they take as their user data. rate: of CVODE; system: factors its linear system; solve: as a linear
-    solver, whose first member points to `data`. The residuals are those of IDA, of kernels with constraints; 0 where
-    there are none. keep: whatever must stay alive while they are used.
+    data: what they take as their user data, whose first member is the integrator's memory. rate: of CVODE; system:
+    factors its linear system; solve: as a linear solver, whose first member points to `data`. The residuals are those
+    of IDA, of kernels with constraints; 0 where there are none. keep: whatever must stay alive while they are used.
     """
 
     data: int
@@ -32,8 +32,9 @@ class Callbacks:
 class NativeKernel(Protocol):
     """A kernel that can also be called from C."""
 
-    def callbacks(self, vector: int) -> Callbacks:
-        """Its callbacks; vector is the address of N_VGetArrayPointer."""
+    def callbacks(self, vector: int, current: int) -> Callbacks:
+        """Its callbacks; vector and current are the addresses of N_VGetArrayPointer, and of CVodeGetCurrentGamma or
+        IDAGetCurrentCj."""
 
 
 class Kernel(Protocol):

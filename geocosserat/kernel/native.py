@@ -35,11 +35,15 @@ int rod_factor(int elements, double gamma, const double *lower, const double *di
                const double *border, double *factors, int *pivots);
 int rod_solve(int elements, const double *factors, const int *pivots, const double *b, double *x, double *scratch);
 typedef struct rod_problem {
+    void *memory;
     const rod *r;
     size_t size;
     double *lower, *diagonal, *upper, *border, *factors, *scratch, *solving, *right;
+    double *at, *next, *rates;
     int *pivots;
-    void *vector;
+    void *vector, *current;
+    int ahead;
+    double t, powers[2];
     double slope;
 } rod_problem;
 int problem_rate(double t, void *y, void *rate, void *problem);
@@ -71,6 +75,7 @@ class NativeRod:
         self._double, self._int = ffi.typeof("double[]"), ffi.typeof("int[]")
         self.size = len(rod.state)
         self.algebraic = rod.algebraic
+        self._quasi_static = rod.quasi_static
         self._elements = rod.mesh.elements
         self._d, self._points = rod.structure.group.dimension, rod.mesh.elements * rod.mesh.degree
         arrays = {
@@ -128,16 +133,19 @@ class NativeRod:
         b = lib.rod_block()
         return np.empty(n * lib.rod_factors()), np.empty(n * b, dtype=np.intc), np.empty(n * b)
 
-    def callbacks(self, vector: int) -> Callbacks:
-        """This kernel as SUNDIALS sees it; vector is the address of N_VGetArrayPointer."""
+    def callbacks(self, vector: int, current: int) -> Callbacks:
+        """This kernel as SUNDIALS sees it; vector and current are the addresses of N_VGetArrayPointer, and of
+        CVodeGetCurrentGamma or IDAGetCurrentCj."""
         ffi, lib = self._ffi, self._lib
         problem = ffi.new("rod_problem *")
         factors, pivots, solving = self._room()
-        arrays = self._space() | {"factors": factors, "solving": solving, "right": np.empty(self.size)}
+        arrays = self._space() | {"factors": factors, "solving": solving}
+        arrays |= {name: np.empty(self.size) for name in ("right", "at", "next", "rates")}
         for name, array in arrays.items():
             setattr(problem, name, ffi.cast("double *", array.ctypes.data))
         problem.pivots = ffi.cast("int *", pivots.ctypes.data)
-        problem.r, problem.size, problem.vector = self._rod, self.size, ffi.cast("void *", vector)
+        problem.r, problem.size, problem.ahead = self._rod, self.size, self._quasi_static
+        problem.vector, problem.current = ffi.cast("void *", vector), ffi.cast("void *", current)
 
         def address(thing: Any) -> int:
             return int(ffi.cast("uintptr_t", thing))

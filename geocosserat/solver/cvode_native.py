@@ -30,7 +30,7 @@ def cvode_native(
 
 class _Cvode(Session):
     name = "CVODE"
-    rate_count, system_setter = "RhsEvals", "SetLinSysFn"
+    rate_count, system_setter, current = "RhsEvals", "SetLinSysFn", "CVodeGetCurrentGamma"
 
     def create(self, t: float) -> Any:
         return self.lib.CVodeCreate(BDF, self.context)

@@ -33,7 +33,7 @@ def ida_native(
 
 class _Ida(Session):
     name = "IDA"
-    rate_count, system_setter = "ResEvals", "SetJacFn"
+    rate_count, system_setter, current = "ResEvals", "SetJacFn", "IDAGetCurrentCj"
 
     def create(self, t: float) -> Any:
         return self.lib.IDACreate(self.context)

@@ -23,12 +23,13 @@ class Session(ABC):
     name: ClassVar[str]
     rate_count: ClassVar[str]
     system_setter: ClassVar[str]
+    current: ClassVar[str]
 
     def __init__(self, library: Sundials, kernel: Kernel, start: Array, t: float, rtol: float, atol: Array) -> None:
         self.library, self.ffi, self.lib = library, library.ffi, library.lib
         self.kernel: Kernel = kernel
         assert isinstance(kernel, NativeKernel)
-        self.callbacks = kernel.callbacks(library.address("N_VGetArrayPointer"))
+        self.callbacks = kernel.callbacks(library.address("N_VGetArrayPointer"), library.address(self.current))
         self.y, self.atol = start.copy(), atol.copy()
         ffi, lib, call = self.ffi, self.lib, library.call
         self._context = ffi.new("void **")
@@ -39,6 +40,7 @@ class Session(ABC):
         self.state, tolerance = self.vector(self.y), self.vector(self.atol)
         self._memory = ffi.new("void **", self.create(t))
         self.memory = self._memory[0]
+        ffi.cast("void **", self.callbacks.data)[0] = self.memory
         self.begin(t)
         self._check(call("SVtolerances")(self.memory, rtol, tolerance))
         self._check(call("SetUserData")(self.memory, self.pointer(self.callbacks.data)))

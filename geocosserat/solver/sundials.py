@@ -52,6 +52,7 @@ void *CVodeCreate(int method, void *context);
 int CVodeInit(void *memory, void *rate, double t, void *y);
 int CVodeSetMaxHnilWarns(void *memory, int count);
 int CVodeSetLinSysFn(void *memory, void *system);
+int CVodeGetCurrentGamma(void *memory, double *gamma);
 int CVodeGetNumRhsEvals(void *memory, long *count);
 int CVode(void *memory, double until, void *y, double *t, int task);
 """,
@@ -61,6 +62,7 @@ int IDAInit(void *memory, void *residual, double t, void *y, void *slope);
 int IDASetId(void *memory, void *differential);
 int IDASetSuppressAlg(void *memory, int suppress);
 int IDASetJacFn(void *memory, void *system);
+int IDAGetCurrentCj(void *memory, double *slope);
 int IDAGetNumResEvals(void *memory, long *count);
 int IDASolve(void *memory, double until, double *t, void *y, void *slope, int task);
 """,

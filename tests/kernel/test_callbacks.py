@@ -10,9 +10,11 @@ import pytest
 from numpy.typing import NDArray
 
 from geocosserat.conductor import kernel_text
+from geocosserat.discretisation.semidiscrete import discretise
 from geocosserat.kernel.contract import NativeKernel
+from geocosserat.kernel.load import load
 from geocosserat.kernel.native import NativeRod
-from tests.discretisation.rods import FROZEN, rod
+from tests.discretisation.rods import FROZEN, changed, random_state, rod
 from tests.kernel.kernels import Case, T, cases, kernel, rate, state
 
 Array = NDArray[np.float64]
@@ -27,8 +29,15 @@ class Caller:
         self.ffi = ffi = cffi.FFI()
         self.data = ffi.callback("double *(void *)", lambda thing: ffi.cast("double *", thing))
         address = int(ffi.cast("uintptr_t", self.data))
-        self.callbacks = k.callbacks(address)
+        self.gamma: float | None = None  # as it was set up
+        self.current = ffi.callback("int (void *, double *)", self._current)
+        self.callbacks = k.callbacks(address, int(ffi.cast("uintptr_t", self.current)))
         self.solver = ffi.new("void *[2]", [self.problem, ffi.NULL])
+
+    def _current(self, memory: Any, into: Any) -> int:
+        if self.gamma is not None:
+            into[0] = self.gamma
+        return 0
 
     def at(self, array: Array) -> Any:
         return self.ffi.cast("void *", array.ctypes.data)
@@ -141,3 +150,27 @@ def test_the_system_of_the_residual_is_its_jacobian(case: Case, c: float) -> Non
     found, wanted = caller.solve(b, "residual_solve"), np.linalg.solve(matrix, b)
     accuracy = max(1e-11, 1e-16 * np.linalg.cond(matrix))
     np.testing.assert_allclose(found, wanted, rtol=0, atol=accuracy * np.abs(wanted).max())
+
+
+def test_without_friction_of_a_rotation_the_energies_change_by_their_powers_where_newton_leads() -> None:
+    """By b and gamma times what the powers differ there from where they were asked for; all else as ever."""
+    rods = [
+        discretise(changed("planar everything", rod={"friction": [1.0, 2.0, friction]}), 4, 2) for friction in (0, 0.3)
+    ]
+    for r, ahead in zip(rods, (True, False), strict=True):
+        k = load(kernel_text(r.structure), r, "c")
+        assert isinstance(k, NativeRod)
+        caller, y, b = Caller(k), random_state(r, 1), random_state(r, 2)
+        gamma, here, there, plain = 1e-3, np.empty(len(y)), np.empty(len(y)), np.empty(len(y))
+        caller.gamma = gamma
+        assert caller.system(T, y, False, gamma) == (0, True)
+        assert caller.rate(T, y, here) == 0
+        change = caller.solve(b)
+        k.prepare(T, y)
+        k.factor(gamma)
+        k.solve(b, plain)
+        k.rate(T, y + change * (np.arange(len(y)) < len(y) - 2), there)
+        wanted = b[-2:] + ahead * gamma * (there - here)[-2:]
+        np.testing.assert_array_equal(change[:-2], plain[:-2])
+        np.testing.assert_allclose(change[-2:], wanted, rtol=1e-12)
+        assert (np.abs(change[-2:] - b[-2:]).max() > 1e-3) == ahead

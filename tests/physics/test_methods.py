@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from geocosserat.solver import cvode, integrate
-from tests.physics.scenes import Array, Scene, changed, example, simulate, tip
+from tests.physics.scenes import Array, Scene, changed, example, simulate, straight, tip
 
 SCENES = {name: changed(example(name), {"run.until": until}) for name, until in (("follower", 0.3), ("sinking", 0.02))}
 CURLED = changed(example("helix"), {"rod.reference": [1.0, 0.0, 0.0, 2.0, 0.0, 4.0], "run.until": 0.02})
@@ -67,3 +67,23 @@ def test_sundials_called_directly_gives_what_it_gives_through_its_binding(
     there = simulate(scene, elements, 6, 1e-9, "c")
     np.testing.assert_allclose(tip(here), tip(there), rtol=0, atol=1e-7)
     assert here.evaluations["steps"] < 1.2 * there.evaluations["steps"] + 50
+
+
+@pytest.mark.usefixtures("c_compiler")
+@pytest.mark.parametrize("frozen", [[], ["h1", "h2"]], ids=["full", "frozen"])
+def test_a_rotation_without_friction_takes_about_as_many_steps_as_one_with_some(frozen: list[str]) -> None:
+    """Under a couple that no moment balances at first; and the ledger closes."""
+    field = {"kind": "field", "moment": [1.0, 0.0], "field": [2.0, 1.0]}
+    runs = [
+        simulate(
+            changed(
+                straight([60.0, 40.0, 1.0], [1.0, 1.7, friction]),
+                {"rod.frozen": frozen, "effects": [field], "run.until": 0.5},
+            ),
+            1, 12, 1e-7, "c",
+        )
+        for friction in (0.02, 0)
+    ]  # fmt: skip
+    rubbed, quasi_static = (run.evaluations["steps"] for run in runs)
+    assert quasi_static < 3 * rubbed
+    assert max(run.ledger["residual"] for run in runs) < 1e-3

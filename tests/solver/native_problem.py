@@ -15,6 +15,7 @@ from tests.solver.problems import Array, constrained, forced_rates
 
 STRUCT = """
 typedef struct {
+    void *memory;
     int size, calls;
     double bad, latest, gamma, *rates, *at;
     double *(*vector)(void *);
@@ -123,7 +124,7 @@ class NativeForced:
         self.problem.rates = ffi.cast("double *", self._rates.ctypes.data)
         self.problem.at = ffi.cast("double *", self._at.ctypes.data)
 
-    def callbacks(self, vector: int) -> Callbacks:
+    def callbacks(self, vector: int, current: int) -> Callbacks:
         ffi = self._ffi
         self.problem.vector = ffi.cast("double *(*)(void *)", vector)
 
@@ -153,10 +154,10 @@ class NativeConstrained(NativeForced):
     def algebraic(self) -> Array:
         return self._python.algebraic
 
-    def callbacks(self, vector: int) -> Callbacks:
+    def callbacks(self, vector: int, current: int) -> Callbacks:
         names = ("residual", "residual_system", "residual_solve")
         found = {name: int(self._ffi.cast("uintptr_t", getattr(self._lib, name))) for name in names}
-        return replace(super().callbacks(vector), **found)
+        return replace(super().callbacks(vector, current), **found)
 
     def rate(self, t: float, y: Array, out: Array) -> None:
         self._python.rate(t, y, out)
