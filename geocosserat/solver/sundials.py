@@ -80,7 +80,10 @@ MEMBERS, TABLE = 3, 12
 
 @dataclass(frozen=True)
 class Sundials:
-    """An open library, the foreign-function interface it is called through, and which integrator it holds."""
+    """An open library, the foreign-function interface it is called through, and which integrator it holds.
+
+    table: which member of a linear solver points to its operations; places: where among them some are, by name.
+    """
 
     ffi: cffi.FFI
     lib: Any
