@@ -158,14 +158,15 @@ def _end(names: _Names, side: str, end: End, model: RodModel, dragged: bool) -> 
 
 
 def _stirred(model: RodModel) -> bool:
-    """Whether something may move the rod for ever: anything timed, any load that no potential of its pose gives."""
+    """Whether something may move the rod for ever: anything timed, a medium that flows, a load without a potential."""
     frame = seen(model.group.space)
     ends = (model.left, model.right)
     if any(end.kind == "driven" or end.force or end.torque for end in ends):
         return True
     timed = any("t" in symbols(e) for e in model.reference)
     timed |= any("t" in symbols(e) for effect in model.effects for value in effect.values().values() for e in value)
-    return timed or any(effect.potential(frame) is None for effect in model.effects)
+    flows = any(present((*velocity, *spin)) for velocity, spin in (e.medium(frame) for e in model.effects))
+    return timed or flows or any(effect.potential(frame) is None for effect in model.effects)
 
 
 def _homing(names: _Names, side: str, end: EndStructure, space: int) -> EndStructure:

@@ -194,7 +194,8 @@ class NativeRod:
             self._ffi.from_buffer(self._int, pivots),
         )
         if failed:
-            raise np.linalg.LinAlgError(f"the linear system of element {failed - 1} is singular")
+            where = f"element {failed - 1}" if failed <= self._elements else "the whole rod"
+            raise np.linalg.LinAlgError(f"the linear system of {where} is singular")
 
     def solve(self, b: Array, out: Array) -> None:
         assert self._factors is not None, "factor comes before solve"
