@@ -7,16 +7,21 @@ import shlex
 import shutil
 import subprocess
 import tempfile
+from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
+from typing import TypeVar
 
 from geocosserat.kernel.places import cache_folder
 
-FLAGS = ("-std=c99", "-O3", "-march=native", "-fno-math-errno", "-fPIC", "-shared")
+FLAGS = ("-std=c99", "-O3", "-march=native", "-fno-math-errno", "-ffp-contract=fast", "-fPIC", "-shared")
 """Strict floating point: no -ffast-math. Without errno, sqrt and the like need no call."""
 
 PATIENCE = 600.0
 """Seconds that a compiler is given."""
+
+
+T = TypeVar("T")
 
 
 class CompileError(RuntimeError):
@@ -63,8 +68,8 @@ def library_path(source: str, degree: int, tool: str) -> Path:
     return cache_folder() / f"{hashlib.sha256(chr(0).join(parts).encode()).hexdigest()}.so"
 
 
-def compile_c(source: str, degree: int) -> Path:
-    """The shared library of a kernel at a degree, compiled now if it never was.
+def compile_c(source: str, degree: int = 0) -> Path:
+    """The shared library of a kernel at a degree, or of other C (which has none), compiled now if it never was.
 
     Two processes may compile the same kernel at once: each writes its own file, the last one stays, both are equal.
 
@@ -91,3 +96,19 @@ def compile_c(source: str, degree: int) -> Path:
     except OSError as error:  # a full or read-only disk, a compiler that is no program
         raise CompileError(f"{tool} could not be used on a generated kernel: {error}") from error
     return target
+
+
+def opened(open_library: Callable[[Path], T], source: str, degree: int = 0) -> T:
+    """What `open_library` makes of the compiled library. One that was cut off when the machine went down is made again.
+
+    Raises CompileError where there is no compiler, or libraries cannot be loaded.
+    """
+    library = compile_c(source, degree)
+    try:
+        return open_library(library)
+    except OSError:
+        library.unlink(missing_ok=True)
+    try:
+        return open_library(compile_c(source, degree))
+    except OSError as error:  # a folder whose files may not be run
+        raise CompileError(f"expected a compiled kernel that can be loaded: {error}; set GEOCOSSERAT_CACHE") from error

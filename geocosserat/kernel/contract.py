@@ -28,9 +28,28 @@ class Callbacks:
     residual_solve: int = 0
 
 
+@dataclass(frozen=True)
+class Functions:
+    """Addresses of C functions for an integrator of small dense systems.
+
+    data: what they take first. rate: int (data, t, y, rate). jacobian: const double * (data, t, y), the matrix by rows,
+    its owner's until the next call. quadratures: how many of the last entries nothing depends on. keep: whatever must
+    stay alive while they are used.
+    """
+
+    data: int
+    rate: int
+    jacobian: int
+    quadratures: int
+    keep: Any
+
+
 @runtime_checkable
 class NativeKernel(Protocol):
     """A kernel that can also be called from C."""
+
+    def functions(self) -> Functions:
+        """Its rate and dense Jacobian."""
 
     def callbacks(self, vector: int, current: int) -> Callbacks:
         """Its callbacks; vector and current are the addresses of N_VGetArrayPointer, and of CVodeGetCurrentGamma or

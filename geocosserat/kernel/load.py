@@ -5,7 +5,7 @@ import importlib.util
 import types
 
 from geocosserat.discretisation.semidiscrete import SemiDiscrete
-from geocosserat.kernel.compile import CompileError, compile_c
+from geocosserat.kernel.compile import opened
 from geocosserat.kernel.library import KernelText
 from geocosserat.kernel.native import NativeRod
 from geocosserat.kernel.pure import NumpyRod
@@ -41,16 +41,6 @@ def load(text: KernelText, rod: SemiDiscrete, backend: str) -> NativeRod | Numpy
 
     Raises CompileError if C was asked for and cannot be compiled or loaded.
     """
-    return _native(text, rod) if backend == "c" else NumpyRod(_module(text), rod)
-
-
-def _native(text: KernelText, rod: SemiDiscrete) -> NativeRod:
-    library = compile_c(text.c, rod.mesh.degree)
-    try:
-        return NativeRod(library, rod)
-    except OSError:  # cut off when the machine went down: make it again
-        library.unlink(missing_ok=True)
-    try:
-        return NativeRod(compile_c(text.c, rod.mesh.degree), rod)
-    except OSError as error:  # a folder whose files may not be run
-        raise CompileError(f"expected a compiled kernel that can be loaded: {error}; set GEOCOSSERAT_CACHE") from error
+    if backend == "c":
+        return opened(lambda library: NativeRod(library, rod), text.c, rod.mesh.degree)
+    return NumpyRod(_module(text), rod)

@@ -11,7 +11,7 @@ import cffi
 import numpy as np
 
 from geocosserat.discretisation.semidiscrete import SemiDiscrete
-from geocosserat.kernel.contract import Array, Callbacks
+from geocosserat.kernel.contract import Array, Callbacks, Functions
 
 DECLARATIONS = """
 typedef struct rod {
@@ -39,13 +39,15 @@ typedef struct rod_problem {
     const rod *r;
     size_t size;
     double *lower, *diagonal, *upper, *border, *factors, *scratch, *solving, *right;
-    double *at, *next, *rates;
+    double *whole, *at, *next, *rates;
     int *pivots;
     void *vector, *current;
     int ahead;
     double t, powers[2];
     double slope;
 } rod_problem;
+int problem_slope(void *problem, double t, const double *y, double *rate);
+const double *problem_dense(void *problem, double t, const double *y);
 int problem_rate(double t, void *y, void *rate, void *problem);
 int problem_system(double t, void *y, void *rate, void *none, int usable, int *renewed, double gamma, void *problem,
                    void *a, void *b, void *c);
@@ -55,6 +57,10 @@ int problem_residual_system(double t, double c, void *y, void *yp, void *residua
                             void *a1, void *a2, void *a3);
 int problem_residual_solve(void *solver, void *none, void *x, void *b, double tolerance);
 """
+
+
+ENERGIES = 2
+"""Dissipated and work done, the last entries of the state, on which nothing depends."""
 
 
 @lru_cache(maxsize=1)
@@ -133,6 +139,19 @@ class NativeRod:
         b = lib.rod_block()
         return np.empty(n * lib.rod_factors()), np.empty(n * b, dtype=np.intc), np.empty(n * b)
 
+    def functions(self) -> Functions:
+        """Rate and dense Jacobian as an integrator takes them that calls C directly."""
+        ffi, lib = self._ffi, self._lib
+        problem = ffi.new("rod_problem *")
+        arrays = self._space() | {"whole": np.empty(self._dense_room())}
+        for name, array in arrays.items():
+            setattr(problem, name, ffi.cast("double *", array.ctypes.data))
+        problem.r, problem.size = self._rod, self.size
+        data, rate, jacobian = (
+            int(ffi.cast("uintptr_t", thing)) for thing in (problem, lib.problem_slope, lib.problem_dense)
+        )
+        return Functions(data, rate, jacobian, ENERGIES, keep=(problem, arrays, self))
+
     def callbacks(self, vector: int, current: int) -> Callbacks:
         """This kernel as SUNDIALS sees it; vector and current are the addresses of N_VGetArrayPointer, and of
         CVodeGetCurrentGamma or IDAGetCurrentCj."""
@@ -172,9 +191,13 @@ class NativeRod:
 
         return product(space["lower"]), space["diagonal"].copy(), product(space["upper"])
 
+    def _dense_room(self) -> int:
+        """Numbers of a dense Jacobian, with room behind the matrix for the eliminated poses."""
+        return self.size * (self.size + 12)
+
     def jacobian(self, t: float, y: Array) -> Array:
         space = [self._at(a) for a in self._space().values()]
-        J = np.empty(self.size * (self.size + 12))  # room behind the matrix for the eliminated orientations
+        J = np.empty(self._dense_room())
         self._lib.rod_dense(self._rod, t, self._at(y), self._at(J), *space)
         return J[: self.size**2].reshape(self.size, self.size)
 

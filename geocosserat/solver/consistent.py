@@ -4,8 +4,9 @@ import numpy as np
 
 from geocosserat.kernel.contract import Array, Kernel
 
-SOLVED = 1e-6
-"""Of what constraints were violated by; where more is left, the kernel's elimination was too inaccurate."""
+SOLVED, SETTLED = 1e-6, 1e-9
+"""Of what constraints were violated by, and of the unknowns themselves by which they changed; where more is left, the
+kernel's elimination was too inaccurate."""
 
 
 def consistent(kernel: Kernel, t: float, y: Array, blocks: bool = False) -> Array:
@@ -28,7 +29,8 @@ def consistent(kernel: Kernel, t: float, y: Array, blocks: bool = False) -> Arra
         kernel.solve(gap * kernel.algebraic, change)
         found[fixed] -= change[fixed]
         kernel.rate(t, found, left)
-        if np.abs(left[fixed]).max() <= SOLVED * np.abs(gap[fixed]).max():
+        solved = np.abs(left[fixed]).max() <= SOLVED * np.abs(gap[fixed]).max()
+        if solved or np.abs(change[fixed]).max() <= SETTLED * np.abs(found[fixed]).max():
             return found
     y[fixed] -= np.linalg.solve(kernel.jacobian(t, y)[np.ix_(fixed, fixed)], gap[fixed])
     return y

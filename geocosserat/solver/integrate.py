@@ -12,6 +12,7 @@ from geocosserat.solver.consistent import consistent
 from geocosserat.solver.cvode_native import cvode_native
 from geocosserat.solver.ida_native import ida_native
 from geocosserat.solver.pieces import in_pieces
+from geocosserat.solver.radau_native import LARGEST, radau_native
 from geocosserat.solver.reduced import Integrator, reduced
 from geocosserat.solver.sundials import sundials
 from geocosserat.solver.trajectory import Frame, Progress, Trajectory
@@ -67,12 +68,14 @@ def integrate(
 
 def _chosen(method: str, kernel: Kernel) -> Integrator:
     """The integrator of that name. SUNDIALS is called directly where kernel and installation allow it: CVODE, or IDA
-    where there are constraints."""
+    where there are constraints. Radau is our own for compiled kernels, scipy's for others."""
     constrained = bool(np.any(kernel.algebraic))
     if method == "cvode" and isinstance(kernel, NativeKernel):
         library = sundials("IDA" if constrained else "CVode")
         if library is not None:
             return partial(ida_native if constrained else cvode_native, library)
+    if method == "radau" and isinstance(kernel, NativeKernel) and kernel.size <= LARGEST:
+        return radau_native
     found = _integrator("cvode", "cvode") if method == "cvode" else _integrator("scipy_methods", method)
     return reduced(found) if constrained else found
 

@@ -12,11 +12,8 @@ from scipy.integrate import BDF, LSODA, OdeSolver, Radau
 
 from geocosserat.kernel.contract import Array, Kernel
 from geocosserat.solver.counted import Counted
-from geocosserat.solver.settings import hopeless, stands_still
+from geocosserat.solver.settings import LEAST_RTOL, hopeless, stands_still
 from geocosserat.solver.trajectory import Frame, Progress, Trajectory
-
-LEAST_RTOL = 100 * float(np.finfo(float).eps)
-"""scipy takes no smaller one, and warns."""
 
 
 def _integrate(

@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from geocosserat.kernel.contract import Array, Kernel, NativeKernel
-from geocosserat.solver.settings import BREATH, NEWTON, hopeless, stands_still
+from geocosserat.solver.settings import BREATH, NEWTON, SINGULAR, hopeless, stands_still
 from geocosserat.solver.sundials import Sundials
 from geocosserat.solver.trajectory import Frame, Progress, Trajectory
 
@@ -148,7 +148,6 @@ class Session(ABC):
         return MEANINGS.get(words.partition("_")[2], words)
 
 
-SINGULAR = "the motion may be singular here"
 MEANINGS = {
     "ERR_FAILURE": f"the error test failed however small the step; {SINGULAR}",
     "ERR_FAIL": f"the error test failed however small the step; {SINGULAR}",

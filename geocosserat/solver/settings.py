@@ -21,6 +21,11 @@ BREATH = 500
 STANDSTILL = 8 * sys.float_info.epsilon
 """Steps that are shorter, relative to the time, go nowhere: some integrators go on with them for ever."""
 
+LEAST_RTOL = 100 * sys.float_info.epsilon
+"""The least relative tolerance that Radau IIA takes, scipy's or our own; below it is round-off."""
+
+SINGULAR = "the motion may be singular here"
+
 
 def stands_still(before: float, now: float, steps: int = 1) -> bool:
     """Whether so many steps hardly moved the time: the motion is singular here."""

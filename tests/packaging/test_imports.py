@@ -21,7 +21,7 @@ STAGES = {
     "discretisation": ("algebra", "model", "derivation"),
     "codegen": ("algebra", "model", "derivation", "discretisation"),
     "kernel": ("algebra", "model", "discretisation"),  # kernels are text by now: no sympy, no templates
-    "solver": ("kernel.contract",),  # integrates anything that keeps the contract; knows no rods
+    "solver": ("kernel.contract", "kernel.compile"),  # integrates anything that keeps the contract; knows no rods
     "results": ("algebra.groups", "model.errors", "kernel.contract", "solver.trajectory"),
     "accuracy": ("discretisation.mesh", "model"),  # the conductor's plan
 }

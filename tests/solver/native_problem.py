@@ -10,20 +10,39 @@ from typing import Any
 import cffi
 import numpy as np
 
-from geocosserat.kernel.contract import Callbacks
+from geocosserat.kernel.contract import Callbacks, Functions
 from tests.solver.problems import Array, constrained, forced_rates
 
 STRUCT = """
 typedef struct {
     void *memory;
     int size, calls;
-    double bad, latest, gamma, *rates, *at;
+    double bad, latest, gamma, *rates, *at, *matrix;
     double *(*vector)(void *);
 } problem;
 """
 SOURCE = rf"""
 #include <math.h>
 {STRUCT}
+/* What Radau IIA takes: the rate and the Jacobian by rows, which stands in `matrix`. */
+int slope(void *data, double t, const double *x, double *r)
+{{
+    problem *p = data;
+    for (int i = 0; i < p->size; ++i)
+        r[i] = -p->rates[i] * (x[i] - cos(t));
+    p->calls += 1;
+    p->latest = fmax(p->latest, t);
+    if (t > p->bad)
+        r[p->size - 1] = NAN;
+    return 0;
+}}
+const double *matrix(void *data, double t, const double *x)
+{{
+    problem *p = data;
+    for (int i = 0; i < p->size * p->size; ++i)
+        p->matrix[i] = i % (p->size + 1) ? 0.0 : -p->rates[i / p->size];
+    return p->matrix;
+}}
 /* From the instant `bad` on the last rate is NaN, and said to be so. */
 int rate(double t, void *y, void *out, void *data)
 {{
@@ -68,6 +87,32 @@ int residual(double t, void *y, void *yp, void *out, void *data)
     p->latest = fmax(p->latest, t);
     return t <= p->bad ? 0 : 1;
 }
+int constrained_slope(void *data, double t, const double *x, double *r)
+{
+    problem *p = data;
+    const int m = p->size / 2;
+    for (int i = 0; i < m; ++i) {
+        r[i] = -p->rates[i] * (x[i] - x[m + i]);
+        r[m + i] = (1.0 + x[i] * x[i]) * (x[m + i] - cos(t)) + (t > p->bad ? NAN : 0.0);
+    }
+    p->calls += 1;
+    p->latest = fmax(p->latest, t);
+    return 0;
+}
+const double *constrained_matrix(void *data, double t, const double *x)
+{
+    problem *p = data;
+    const int n = p->size, m = n / 2;
+    for (int i = 0; i < n * n; ++i)
+        p->matrix[i] = 0.0;
+    for (int i = 0; i < m; ++i) {
+        p->matrix[i * n + i] = -p->rates[i];
+        p->matrix[i * n + m + i] = p->rates[i];
+        p->matrix[(m + i) * n + i] = 2.0 * x[i] * (x[m + i] - cos(t));
+        p->matrix[(m + i) * n + m + i] = 1.0 + x[i] * x[i];
+    }
+    return p->matrix;
+}
 int residual_system(double t, double c, void *y, void *yp, void *r, void *none, void *data,
                     void *a1, void *a2, void *a3)
 {
@@ -93,6 +138,10 @@ DECLARATIONS = f"""
 {STRUCT}int rate(double, void *, void *, void *);
 int system(double, void *, void *, void *, int, int *, double, void *, void *, void *, void *);
 int solve(void *, void *, void *, void *, double);
+int slope(void *, double, const double *, double *);
+const double *matrix(void *, double, const double *);
+int constrained_slope(void *, double, const double *, double *);
+const double *constrained_matrix(void *, double, const double *);
 int residual(double, void *, void *, void *, void *);
 int residual_system(double, double, void *, void *, void *, void *, void *, void *, void *, void *);
 int residual_solve(void *, void *, void *, void *, double);
@@ -120,7 +169,8 @@ class NativeForced:
         self._rates = forced_rates(size)
         self.problem = ffi.new("problem *")
         self.problem.size, self.problem.bad = size, bad
-        self._at = np.empty(size)
+        self._at, self._matrix = np.empty(size), np.empty((2 * size) ** 2)
+        self.problem.matrix = ffi.cast("double *", self._matrix.ctypes.data)
         self.problem.rates = ffi.cast("double *", self._rates.ctypes.data)
         self.problem.at = ffi.cast("double *", self._at.ctypes.data)
 
@@ -133,6 +183,14 @@ class NativeForced:
 
         functions = (getattr(self._lib, name) for name in ("rate", "system", "solve"))
         return Callbacks(address(self.problem), *map(address, functions), keep=self)
+
+    def functions(self) -> Functions:
+        return self._functions("slope", "matrix")
+
+    def _functions(self, rate: str, jacobian: str) -> Functions:
+        things = (self.problem, getattr(self._lib, rate), getattr(self._lib, jacobian))
+        data, slope, matrix = (int(self._ffi.cast("uintptr_t", thing)) for thing in things)
+        return Functions(data, slope, matrix, quadratures=0, keep=self)
 
     @property
     def algebraic(self) -> Array:
@@ -153,6 +211,9 @@ class NativeConstrained(NativeForced):
     @property
     def algebraic(self) -> Array:
         return self._python.algebraic
+
+    def functions(self) -> Functions:
+        return self._functions("constrained_slope", "constrained_matrix")
 
     def callbacks(self, vector: int, current: int) -> Callbacks:
         names = ("residual", "residual_system", "residual_solve")

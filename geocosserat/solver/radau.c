@@ -1,0 +1,709 @@
+/* Radau IIA collocation with an odd number of stages, for small dense systems with or without constraints:
+ *
+ *     mask y' = f(t, y),    mask 1 for what moves, 0 for what a constraint f_i = 0 fixes (index 1, linear in it).
+ *
+ * Order 2 s - 1, L-stable, and B-stable: what contracts, contracts in every step however long. The last entries may be
+ * quadratures, which nothing depends on; they are integrated by the same formula and cost no linear algebra.
+ *
+ * Each step solves for the values at all stages by Newton's method, whose matrix falls apart into a real and (s - 1) / 2
+ * complex ones of the size of the system. Constraints are eliminated once for a Jacobian, not for every step size.
+ *
+ * Source: E. Hairer and G. Wanner, Solving Ordinary Differential Equations II (1996), section IV.8; for the embedded
+ * formula and the choice of steps too.
+ */
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_STAGES = 7, PAIRS = (MOST_STAGES - 1) / 2 };
+enum { REACHED = 0, PAUSED = 1, STANDSTILL = -1, DIVERGED = -2, NOT_FINITE = -3, SINGULAR = -4 };
+enum { MOST_FAILURES = 60, BREATH = 500 }; /* tries of one step; steps between two looks at the world outside */
+
+/* A Jacobian serves on as long as Newton's method with it leaves less than this of an error in each round. */
+static const double RENEW = 0.05;
+
+/* Of a first change of Newton's method this much counts as still to come, however well it worked in the last step. */
+static const double UNSEEN = 0.1;
+
+/* The method: abscissae; weights; those of the embedded formula less them, as they act on the stages' displacements; and
+ * its inverse, split by eigenvalues: value, row that picks its part, column that puts it back (first the real one, then
+ * one of each complex pair). */
+typedef struct method {
+    int stages;
+    double node[MOST_STAGES], weight[MOST_STAGES][MOST_STAGES], error[MOST_STAGES];
+    double value[PAIRS + 1][2], row[PAIRS + 1][MOST_STAGES][2], column[PAIRS + 1][MOST_STAGES][2];
+} method;
+
+typedef int (*rate_of)(void *data, double t, const double *y, double *rate);
+typedef const double *(*jacobian_of)(void *data, double t, const double *y);
+
+typedef struct radau {
+    method m;
+    int size, moving, fixed; /* entries of the state; of those that move, and that constraints fix */
+    void *data;
+    rate_of rate;
+    jacobian_of jacobian;
+    double rtol;
+    long steps, rates, jacobians;
+    double t, end, h;          /* now; where to stop; the step to try */
+    double last_h, last_error; /* of the step that led here, 0 where there is none */
+    double share;              /* of Newton's last change that is still to come, as far as is known */
+    double contraction;        /* of Newton's method in the last step */
+    int finite;                /* whether the last rate was */
+    int current, factored;     /* whether the Jacobian is that of now, and the factors fit it and h */
+    int *moves, *fixes;        /* which entries those are */
+    int *inner_pivots, *pivots[PAIRS + 1];
+    double *numbers;           /* room for all that follows */
+    double *y, *slope, *atol, *scale; /* the state, its rate, tolerances, one over what an error may be */
+    double *Z, *last_Z, *F, *change;  /* [stages][size] displacements, now and in the last step; rates; Newton's change */
+    double *trial, *error;
+    double *schur, *coupling, *feed, *inner, *answers, *both; /* of the Jacobian, see `condense` */
+    double *matrix[PAIRS + 1];                                /* factors: a real matrix, then complex ones */
+    double *right, *sides, *found, *room, *picked;            /* of one linear system, see `solve_part` */
+} radau;
+
+/* The step over the method's eigenvalue, re + i im. */
+static void share_of(const radau *r, int k, double *re, double *im)
+{
+    const double *v = r->m.value[k], size = v[0] * v[0] + v[1] * v[1];
+    *re = r->h * v[0] / size;
+    *im = -r->h * v[1] / size;
+}
+
+/* y -= f x */
+static inline void subtract(int n, double f, const double *restrict x, double *restrict y)
+{
+    for (int j = 0; j < n; ++j)
+        y[j] -= f * x[j];
+}
+
+static void exchange(double *x, double *y)
+{
+    const double swap = *x;
+    *x = *y;
+    *y = swap;
+}
+
+/* Matrices are stored by columns: their factors then work on whole columns, and so do solutions with them. */
+
+/* Factors A [n][n] in place, with partial pivoting; one over each pivot takes its place. Returns 1 if one is missing. */
+static int factor(int n, double *A, int *pivots)
+{
+    for (int k = 0; k < n; ++k) {
+        double *own = A + (size_t)k * n;
+        int best = k;
+        for (int i = k + 1; i < n; ++i)
+            if (fabs(own[i]) > fabs(own[best]))
+                best = i;
+        if (!(fabs(own[best]) > 0.0))
+            return 1;
+        pivots[k] = best;
+        if (best != k)
+            for (int j = 0; j < n; ++j)
+                exchange(A + (size_t)j * n + k, A + (size_t)j * n + best);
+        own[k] = 1.0 / own[k];
+        for (int i = k + 1; i < n; ++i)
+            own[i] *= own[k];
+        for (int j = k + 1; j < n; ++j)
+            subtract(n - k - 1, A[(size_t)j * n + k], own + k + 1, A + (size_t)j * n + k + 1);
+    }
+    return 0;
+}
+
+static void solve(int n, const double *A, const int *pivots, double *x)
+{
+    for (int k = 0; k < n; ++k)
+        exchange(x + k, x + pivots[k]);
+    for (int k = 0; k + 1 < n; ++k)
+        subtract(n - k - 1, x[k], A + (size_t)k * n + k + 1, x + k + 1);
+    for (int k = n - 1; k >= 0; --k) {
+        x[k] *= A[(size_t)k * n + k];
+        subtract(k, x[k], A + (size_t)k * n, x);
+    }
+}
+
+/* Solves for as many columns as `sides`, which are stored by rows: B [n][sides]. */
+static void solve_rows(int n, const double *A, const int *pivots, int sides, double *B)
+{
+    for (int k = 0; k < n; ++k)
+        for (int j = 0; j < sides; ++j)
+            exchange(B + (size_t)k * sides + j, B + (size_t)pivots[k] * sides + j);
+    for (int k = 0; k < n; ++k)
+        for (int i = k + 1; i < n; ++i)
+            subtract(sides, A[(size_t)k * n + i], B + (size_t)k * sides, B + (size_t)i * sides);
+    for (int k = n - 1; k >= 0; --k) {
+        double *row = B + (size_t)k * sides;
+        for (int j = 0; j < sides; ++j)
+            row[j] *= A[(size_t)k * n + k];
+        for (int i = 0; i < k; ++i)
+            subtract(sides, A[(size_t)k * n + i], row, B + (size_t)i * sides);
+    }
+}
+
+/* (y, v) -= (f + i g) (x, u) for complex columns by real and imaginary parts. */
+static inline void subtract_complex(int n, double f, double g, const double *restrict x, const double *restrict u,
+                                    double *restrict y, double *restrict v)
+{
+    for (int j = 0; j < n; ++j) {
+        y[j] -= f * x[j] - g * u[j];
+        v[j] -= f * u[j] + g * x[j];
+    }
+}
+
+/* The same for a complex matrix: real parts [n][n], then imaginary ones. */
+static int factor_complex(int n, double *A, int *pivots)
+{
+    double *B = A + (size_t)n * n;
+    for (int k = 0; k < n; ++k) {
+        double *own = A + (size_t)k * n, *also = B + (size_t)k * n, size = 0.0;
+        int best = k;
+        for (int i = k; i < n; ++i)
+            if (fabs(own[i]) + fabs(also[i]) > size) {
+                size = fabs(own[i]) + fabs(also[i]);
+                best = i;
+            }
+        if (!(size > 0.0))
+            return 1;
+        pivots[k] = best;
+        if (best != k)
+            for (int j = 0; j < n; ++j) {
+                exchange(A + (size_t)j * n + k, A + (size_t)j * n + best);
+                exchange(B + (size_t)j * n + k, B + (size_t)j * n + best);
+            }
+        const double square = own[k] * own[k] + also[k] * also[k], f = own[k] / square, g = -also[k] / square;
+        own[k] = f;
+        also[k] = g;
+        for (int i = k + 1; i < n; ++i) {
+            const double re = own[i];
+            own[i] = f * re - g * also[i];
+            also[i] = f * also[i] + g * re;
+        }
+        for (int j = k + 1; j < n; ++j) {
+            const size_t at = (size_t)j * n;
+            subtract_complex(n - k - 1, A[at + k], B[at + k], own + k + 1, also + k + 1, A + at + k + 1, B + at + k + 1);
+        }
+    }
+    return 0;
+}
+
+/* x: real parts [n], then imaginary ones. */
+static void solve_complex(int n, const double *A, const int *pivots, double *x)
+{
+    const double *B = A + (size_t)n * n;
+    double *y = x + n;
+    for (int k = 0; k < n; ++k) {
+        exchange(x + k, x + pivots[k]);
+        exchange(y + k, y + pivots[k]);
+    }
+    for (int k = 0; k + 1 < n; ++k) {
+        const size_t at = (size_t)k * n + k + 1;
+        subtract_complex(n - k - 1, x[k], y[k], A + at, B + at, x + k + 1, y + k + 1);
+    }
+    for (int k = n - 1; k >= 0; --k) {
+        const size_t at = (size_t)k * n;
+        const double re = x[k] * A[at + k] - y[k] * B[at + k], im = x[k] * B[at + k] + y[k] * A[at + k];
+        x[k] = re;
+        y[k] = im;
+        subtract_complex(k, re, im, A + at, B + at, x, y);
+    }
+}
+
+/* y += A x for A [columns][rows]. */
+static void multiply(int rows, int columns, const double *A, const double *x, double *y)
+{
+    for (int j = 0; j < columns; ++j)
+        subtract(rows, -x[j], A + (size_t)j * rows, y);
+}
+
+/* What the Jacobian says of what moves, once the constraints are solved for. With J = [[M, C], [K, N]], K and N of the
+ * constraints: inner = 1 / N, feed = C / N, answers = N \ K, schur = M - C N \ K. Returns 1 if they cannot be. */
+static int condense(radau *r)
+{
+    const int n = r->size, d = r->moving, a = r->fixed;
+    const double *J = r->jacobian(r->data, r->t, r->y);
+    r->jacobians += 1;
+    r->current = 1;
+    r->factored = 0;
+    for (int i = 0; i < d; ++i) {
+        const double *row = J + (size_t)r->moves[i] * n;
+        for (int j = 0; j < d; ++j)
+            r->schur[j * d + i] = row[r->moves[j]];
+        for (int j = 0; j < a; ++j)
+            r->coupling[j * d + i] = row[r->fixes[j]];
+    }
+    if (!a)
+        return 0;
+    double *N = r->matrix[0], *both = r->both; /* [K, 1] by rows, so that all columns are solved for at once */
+    memset(both, 0, (size_t)a * (d + a) * sizeof *both);
+    for (int i = 0; i < a; ++i) {
+        const double *row = J + (size_t)r->fixes[i] * n;
+        for (int j = 0; j < a; ++j)
+            N[j * a + i] = row[r->fixes[j]];
+        for (int j = 0; j < d; ++j)
+            both[i * (d + a) + j] = row[r->moves[j]];
+        both[i * (d + a) + d + i] = 1.0;
+    }
+    if (factor(a, N, r->inner_pivots))
+        return 1;
+    solve_rows(a, N, r->inner_pivots, d + a, both);
+    for (int i = 0; i < a; ++i) {
+        for (int j = 0; j < d; ++j)
+            r->answers[j * a + i] = both[i * (d + a) + j];
+        for (int j = 0; j < a; ++j)
+            r->inner[j * a + i] = both[i * (d + a) + d + j];
+    }
+    memset(r->feed, 0, (size_t)a * d * sizeof *r->feed);
+    for (int j = 0; j < a; ++j)
+        multiply(d, a, r->coupling, r->inner + j * a, r->feed + j * d);
+    for (int j = 0; j < d; ++j)
+        for (int i = 0; i < a; ++i)
+            subtract(d, r->answers[j * a + i], r->coupling + i * d, r->schur + j * d);
+    return 0;
+}
+
+/* Factors  1 - g schur  for each g = h / eigenvalue. Returns 1 if one is singular. */
+static int factor_all(radau *r)
+{
+    const int d = r->moving, count = d * d;
+    for (int k = 0; k <= r->m.stages / 2; ++k) {
+        double *A = r->matrix[k], re, im;
+        share_of(r, k, &re, &im);
+        for (int i = 0; i < count; ++i)
+            A[i] = -re * r->schur[i];
+        for (int i = 0; i < count && k; ++i)
+            A[count + i] = -im * r->schur[i];
+        for (int i = 0; i < d; ++i)
+            A[i * d + i] += 1.0;
+        if (k ? factor_complex(d, A, r->pivots[k]) : factor(d, A, r->pivots[0]))
+            return 1;
+    }
+    return 0;
+}
+
+/* Solves for one part of Newton's change. On entry `right` holds the sides of what moves, `sides` those of constraints; on
+ * return `right` and `found` their unknowns. Complex ones: real parts, then imaginary ones. */
+static void solve_part(radau *r, int k)
+{
+    const int d = r->moving, a = r->fixed, parts = k ? 2 : 1;
+    double *x = r->right, *room = r->room, re, im;
+    share_of(r, k, &re, &im);
+    if (a) {
+        memset(room, 0, parts * d * sizeof *room);
+        for (int part = 0; part < parts; ++part)
+            multiply(d, a, r->feed, r->sides + part * a, room + part * d);
+        for (int i = 0; i < d; ++i) {
+            x[i] += re * room[i] - (k ? im * room[d + i] : 0.0);
+            if (k)
+                x[d + i] += re * room[d + i] + im * room[i];
+        }
+    }
+    if (k)
+        solve_complex(d, r->matrix[k], r->pivots[k], x);
+    else
+        solve(d, r->matrix[0], r->pivots[0], x);
+    for (int part = 0; part < parts && a; ++part) {
+        double *z = r->found + part * a;
+        memset(room, 0, a * sizeof *room);
+        multiply(a, d, r->answers, x + part * d, room);
+        memset(z, 0, a * sizeof *z);
+        multiply(a, a, r->inner, r->sides + part * a, z);
+        subtract(a, 1.0, room, z);
+    }
+}
+
+/* The rate, and whether all of it is finite. */
+static int evaluate(radau *r, double t, const double *y, double *rate)
+{
+    double all = 0.0;
+    r->rates += 1;
+    r->rate(r->data, t, y, rate);
+    for (int i = 0; i < r->size; ++i)
+        all += rate[i] - rate[i]; /* 0, or NaN */
+    r->finite = all == 0.0;
+    return r->finite;
+}
+
+static int evaluate_stages(radau *r)
+{
+    const int n = r->size;
+    for (int s = 0; s < r->m.stages; ++s) {
+        for (int i = 0; i < n; ++i)
+            r->trial[i] = r->y[i] + r->Z[s * n + i];
+        if (!evaluate(r, r->t + r->m.node[s] * r->h, r->trial, r->F + s * n))
+            return 0;
+    }
+    return 1;
+}
+
+/* Newton's change of all stages into `change`, from rates F at displacements Z. */
+static void newton(radau *r)
+{
+    const int n = r->size, d = r->moving, a = r->fixed, S = r->m.stages;
+    memset(r->change, 0, (size_t)S * n * sizeof *r->change);
+    for (int k = 0; k <= S / 2; ++k) {
+        const int parts = k ? 2 : 1;
+        double *rate = r->picked, *moved = r->picked + 2 * n, re, im; /* the part of F and Z that belongs to this one */
+        memset(r->picked, 0, 4 * n * sizeof *r->picked);
+        for (int part = 0; part < parts; ++part)
+            for (int s = 0; s < S; ++s) {
+                subtract(n, -r->m.row[k][s][part], r->F + s * n, rate + part * n);
+                subtract(n, -r->m.row[k][s][part], r->Z + s * n, moved + part * n);
+            }
+        share_of(r, k, &re, &im);
+        for (int i = 0; i < d; ++i) {
+            const int at = r->moves[i];
+            r->right[i] = re * rate[at] - (k ? im * rate[n + at] : 0.0) - moved[at];
+            if (k)
+                r->right[d + i] = re * rate[n + at] + im * rate[at] - moved[n + at];
+        }
+        for (int part = 0; part < parts; ++part)
+            for (int i = 0; i < a; ++i)
+                r->sides[part * a + i] = -rate[part * n + r->fixes[i]];
+        solve_part(r, k);
+        for (int part = 0; part < parts; ++part) {
+            double *whole = moved; /* in the order of the state */
+            memset(whole, 0, n * sizeof *whole);
+            for (int i = 0; i < d; ++i)
+                whole[r->moves[i]] = r->right[part * d + i];
+            for (int i = 0; i < a; ++i)
+                whole[r->fixes[i]] = r->found[part * a + i];
+            for (int s = 0; s < S; ++s)
+                subtract(n, part ? r->m.column[k][s][1] : -r->m.column[k][s][0], whole, r->change + s * n);
+        }
+    }
+}
+
+/* Weights of the displacements of the stages at a fraction of the step (beyond 1: what lies ahead). */
+static void interpolate(const method *m, double fraction, double *weight)
+{
+    for (int s = 0; s < m->stages; ++s) {
+        double w = fraction / m->node[s];
+        for (int k = 0; k < m->stages; ++k)
+            if (k != s)
+                w *= (fraction - m->node[k]) / (m->node[s] - m->node[k]);
+        weight[s] = w;
+    }
+}
+
+/* Displacements to begin Newton's method with: where the last step leads. */
+static void predict(radau *r)
+{
+    const int n = r->size, S = r->m.stages;
+    memset(r->Z, 0, (size_t)S * n * sizeof *r->Z);
+    if (r->last_h == 0.0)
+        return;
+    for (int s = 0; s < S; ++s) {
+        double weight[MOST_STAGES];
+        interpolate(&r->m, 1.0 + r->m.node[s] * r->h / r->last_h, weight);
+        weight[S - 1] -= 1.0;
+        for (int k = 0; k < S; ++k)
+            subtract(n, -weight[k], r->last_Z + k * n, r->Z + s * n);
+    }
+}
+
+/* Displacements of quadratures at all stages, from their rates. */
+static void sum_quadratures(radau *r)
+{
+    const int n = r->size, S = r->m.stages;
+    for (int i = r->moving + r->fixed; i < n; ++i)
+        for (int s = 0; s < S; ++s) {
+            double total = 0.0;
+            for (int k = 0; k < S; ++k)
+                total += r->m.weight[s][k] * r->F[k * n + i];
+            r->Z[s * n + i] = r->h * total;
+        }
+}
+
+/* Root mean square of Newton's change of all stages, in units of what an error may be; quadratures are not in it. */
+static double change_norm(const radau *r)
+{
+    const int n = r->moving + r->fixed, S = r->m.stages;
+    double total = 0.0;
+    for (int s = 0; s < S; ++s)
+        for (int i = 0; i < n; ++i) {
+            const double x = r->change[s * r->size + i] * r->scale[i];
+            total += x * x;
+        }
+    return sqrt(total / (S * n));
+}
+
+/* Solves for the stages. Returns how many rounds that took, or 0 if it failed; `shrink`: then how much shorter to try. */
+static int solve_stages(radau *r, double *shrink)
+{
+    const int count = r->m.stages * r->size, most = 7 + 2 * (r->m.stages - 3);
+    const double floor = fmin(0.3, 100.0 * DBL_EPSILON / r->rtol), enough = fmax(floor, fmin(0.03, sqrt(r->rtol)));
+    double before = 0.0, theta = 0.0, share = fmax(UNSEEN, pow(r->share, 0.8));
+    *shrink = 0.5;
+    predict(r);
+    for (int round = 1; round <= most; ++round) {
+        if (!evaluate_stages(r))
+            return 0;
+        newton(r);
+        const double size = change_norm(r);
+        if (!(size - size == 0.0))
+            return 0;
+        if (round > 1) {
+            theta = round == 2 ? size / before : sqrt(size / before * theta);
+            if (theta >= 0.99 && size > floor)
+                return 0;
+            share = theta < 0.99 ? theta / (1.0 - theta) : 1.0; /* the latter: round-off */
+            const double missed = share * size * pow(theta, most - 1 - round) / enough;
+            if (missed > 1.0) {
+                *shrink = 0.8 * pow(fmin(20.0, fmax(1e-4, missed)), -1.0 / (3 + most - round));
+                return 0;
+            }
+        }
+        for (int i = 0; i < count; ++i)
+            r->Z[i] += r->change[i];
+        if (share * size <= enough) {
+            r->share = share;
+            r->contraction = theta;
+            return evaluate_stages(r) ? round : 0; /* the rates of what was found: of quadratures, and of the next start */
+        }
+        before = fmax(size, DBL_MIN);
+    }
+    return 0;
+}
+
+/* The error of the step in units of what it may be. `rate` is that at its start, or near it. */
+static double error_of(radau *r, const double *rate)
+{
+    const int n = r->size, d = r->moving, a = r->fixed, quadratures = n - d - a;
+    const double g = r->h / r->m.value[0][0];
+    double total = 0.0;
+    for (int i = 0; i < n; ++i) {
+        double sum = g * rate[i];
+        for (int s = 0; s < r->m.stages; ++s)
+            sum += r->m.error[s] * r->Z[s * n + i];
+        r->error[i] = sum;
+    }
+    for (int i = 0; i < d; ++i)
+        r->right[i] = r->error[r->moves[i]];
+    memset(r->sides, 0, a * sizeof *r->sides); /* constraints hold */
+    solve_part(r, 0);
+    for (int i = 0; i < d; ++i)
+        r->error[r->moves[i]] = r->right[i];
+    for (int i = 0; i < a; ++i)
+        r->error[r->fixes[i]] = 0.0;
+    for (int i = 0; i < n; ++i) {
+        const double x = r->error[i] * r->scale[i];
+        total += x * x;
+    }
+    return sqrt(total / (d + quadratures));
+}
+
+/* The same, looked at twice where it is too large: the first look exaggerates where the problem is stiff. */
+static double estimate(radau *r)
+{
+    double error = error_of(r, r->slope);
+    if (error >= 1.0) {
+        for (int i = 0; i < r->size; ++i)
+            r->trial[i] = r->y[i] + r->error[i];
+        if (evaluate(r, r->t, r->trial, r->change))
+            error = error_of(r, r->change);
+    }
+    return error;
+}
+
+static void change_step(radau *r, double h)
+{
+    r->factored = r->factored && h == r->h;
+    r->h = h;
+}
+
+/* Units of errors: what one may be. */
+static void rescale(radau *r)
+{
+    for (int i = 0; i < r->size; ++i)
+        r->scale[i] = 1.0 / (r->atol[i] + r->rtol * fabs(r->y[i]));
+}
+
+/* Takes up the stages as the step they are. */
+static void accept(radau *r, double error)
+{
+    const int n = r->size, S = r->m.stages;
+    double *swap = r->last_Z;
+    for (int i = 0; i < n; ++i)
+        r->y[i] += r->Z[(S - 1) * n + i];
+    memcpy(r->slope, r->F + (S - 1) * n, n * sizeof *r->slope);
+    r->last_Z = r->Z;
+    r->Z = swap;
+    r->last_h = r->h;
+    r->last_error = fmax(1e-2, error);
+    r->current = 0;
+    rescale(r);
+}
+
+/* One step that is accepted, however many are tried. */
+static int step(radau *r)
+{
+    const int most = 7 + 2 * (r->m.stages - 3);
+    const double power = -1.0 / (r->m.stages + 1);
+    int trouble = STANDSTILL; /* what made the step shorter */
+    for (int failures = 0; failures < MOST_FAILURES; ++failures) {
+        const double left = r->end - r->t;
+        const int last = r->h >= left;
+        if (last)
+            change_step(r, left);
+        else if (2.0 * r->h > left)
+            change_step(r, 0.5 * left); /* two steps alike, not a long and a tiny one */
+        if (!(r->h > 8.0 * DBL_EPSILON * fabs(r->t)) || !(r->h > DBL_MIN))
+            return trouble;
+        if (!r->current && (failures || r->contraction > RENEW) && condense(r))
+            return SINGULAR;
+        if (!r->factored && factor_all(r)) {
+            change_step(r, 0.5 * r->h);
+            continue;
+        }
+        r->factored = 1;
+        r->steps += 1;
+        double shrink;
+        const int rounds = solve_stages(r, &shrink);
+        if (!rounds) {
+            trouble = r->finite ? DIVERGED : NOT_FINITE;
+            change_step(r, shrink * r->h);
+            continue;
+        }
+        sum_quadratures(r);
+        const double error = estimate(r), safety = 0.9 * (1 + 2 * most) / (2 * rounds + 2 * most);
+        double factor_h = fmin(8.0, fmax(0.2, safety * pow(fmax(error, 1e-10), power)));
+        if (!(error < 1.0)) {
+            trouble = STANDSTILL;
+            change_step(r, (r->last_h > 0.0 ? factor_h : 0.1) * r->h);
+            continue;
+        }
+        if (r->last_h > 0.0) /* what the last two steps foretell */
+            factor_h = fmin(factor_h, fmax(0.2, safety * r->h / r->last_h * pow(error * error / r->last_error, power)));
+        if (failures)
+            factor_h = fmin(1.0, factor_h);
+        r->t = last ? r->end : r->t + r->h;
+        accept(r, error);
+        if (r->contraction > RENEW || factor_h < 1.0 || factor_h > 1.2) /* else what is factored serves on */
+            change_step(r, factor_h * r->h);
+        return REACHED;
+    }
+    return trouble;
+}
+
+/* Room for the arrays of an integration. Returns 1 if there is none. */
+static int make_room(radau *r)
+{
+    const size_t n = r->size, d = r->moving, a = r->fixed, S = r->m.stages;
+    const size_t most = d > a ? d : a;
+    struct { double **array; size_t count; } rooms[] = {
+        {&r->y, n}, {&r->slope, n}, {&r->atol, n}, {&r->scale, n}, {&r->trial, n}, {&r->error, n}, {&r->picked, 4 * n},
+        {&r->Z, S * n}, {&r->last_Z, S * n}, {&r->F, S * n}, {&r->change, S * n},
+        {&r->schur, d * d}, {&r->coupling, d * a}, {&r->feed, d * a}, {&r->answers, a * d}, {&r->inner, a * a}, {&r->both, a * (d + a)},
+        {&r->right, 2 * d}, {&r->sides, 2 * a}, {&r->found, 2 * a}, {&r->room, 2 * most},
+        {&r->matrix[0], most * most}, {&r->matrix[1], 2 * d * d}, {&r->matrix[2], 2 * d * d}, {&r->matrix[3], 2 * d * d},
+    };
+    size_t total = 0;
+    for (size_t i = 0; i < sizeof rooms / sizeof *rooms; ++i)
+        total += rooms[i].count;
+    double *numbers = r->numbers = calloc(total, sizeof *numbers);
+    for (size_t i = 0; numbers && i < sizeof rooms / sizeof *rooms; ++i) {
+        *rooms[i].array = numbers;
+        numbers += rooms[i].count;
+    }
+    return !r->numbers;
+}
+
+void radau_free(radau *r)
+{
+    free(r->moves);
+    free(r->numbers);
+    free(r);
+}
+
+/* An integration about to begin at t with the state y, or NULL if memory does not suffice. constrained [size]: 1 for
+ * entries that constraints fix; quadratures: how many of the last entries nothing depends on. */
+radau *radau_new(const method *m, int size, int quadratures, const double *constrained, void *data, rate_of rate,
+                 jacobian_of jacobian, double t, const double *y, double rtol, const double *atol)
+{
+    const size_t n = size;
+    radau *r = calloc(1, sizeof *r);
+    if (!r)
+        return NULL;
+    r->m = *m;
+    r->size = size;
+    for (int i = 0; i < size - quadratures; ++i)
+        r->fixed += constrained[i] != 0.0;
+    r->moving = size - quadratures - r->fixed;
+    const size_t d = r->moving, a = r->fixed;
+    int *counts = r->moves = calloc(n + a + (PAIRS + 1) * d, sizeof *counts);
+    if (make_room(r) || !counts) {
+        radau_free(r);
+        return NULL;
+    }
+    r->fixes = counts + d;
+    r->inner_pivots = counts + n;
+    for (int k = 0; k <= PAIRS; ++k)
+        r->pivots[k] = counts + n + a + k * d;
+    for (int i = 0, moving = 0, fixed = 0; i < size - quadratures; ++i)
+        if (constrained[i] != 0.0)
+            r->fixes[fixed++] = i;
+        else
+            r->moves[moving++] = i;
+    r->data = data;
+    r->rate = rate;
+    r->jacobian = jacobian;
+    r->rtol = rtol;
+    r->t = t;
+    r->share = r->contraction = 1.0;
+    memcpy(r->y, y, n * sizeof *y);
+    memcpy(r->atol, atol, n * sizeof *atol);
+    rescale(r);
+    return r;
+}
+
+/* A first step so short that the rate alone changes little by it. */
+static double first_step(const radau *r)
+{
+    const double span = r->end - r->t;
+    double size = 0.0, speed = 0.0;
+    for (int i = 0; i < r->moving; ++i) {
+        const int at = r->moves[i];
+        size += r->y[at] * r->y[at] * r->scale[at] * r->scale[at];
+        speed += r->slope[at] * r->slope[at] * r->scale[at] * r->scale[at];
+    }
+    return speed * span * span > 1e-10 * size ? fmin(span, 0.01 * sqrt(fmax(size, 1e-10) / speed)) : 1e-3 * span;
+}
+
+/* Goes on until t reaches `until`, never beyond `end`; the state there, between two steps if need be, into out [size].
+ * Returns PAUSED before that if many steps were taken, and a number below zero where it cannot go on. */
+int radau_advance(radau *r, double until, double end, double *out)
+{
+    const int n = r->size, S = r->m.stages;
+    r->end = end;
+    if (r->h == 0.0) {
+        if (!evaluate(r, r->t, r->y, r->slope))
+            return NOT_FINITE;
+        r->h = first_step(r);
+    }
+    for (int taken = 0; r->t < until; ++taken) {
+        if (taken == BREATH)
+            return PAUSED;
+        const int code = step(r);
+        if (code != REACHED)
+            return code;
+    }
+    memcpy(out, r->y, n * sizeof *out);
+    if (r->t > until) {
+        double weight[MOST_STAGES];
+        interpolate(&r->m, 1.0 + (until - r->t) / r->last_h, weight);
+        weight[S - 1] -= 1.0;
+        for (int s = 0; s < S; ++s)
+            subtract(n, -weight[s], r->last_Z + s * n, out);
+    }
+    return REACHED;
+}
+
+/* The time reached; counts: steps tried, rates, Jacobians. */
+double radau_state(const radau *r, long *counts)
+{
+    counts[0] = r->steps;
+    counts[1] = r->rates;
+    counts[2] = r->jacobians;
+    return r->t;
+}

@@ -1,0 +1,139 @@
+"""Radau IIA of order 5, 9 or 13 around a compiled kernel: few long steps, for small systems; see radau.c.
+
+Source: E. Hairer and G. Wanner, J. Comput. Appl. Math. 111 (1999) 93.
+"""
+
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import cffi
+import numpy as np
+
+from geocosserat.kernel.compile import opened
+from geocosserat.kernel.contract import Array, Kernel, NativeKernel
+from geocosserat.solver.settings import LEAST_RTOL, SINGULAR, hopeless
+from geocosserat.solver.trajectory import Frame, Progress, Trajectory
+
+LARGEST = 1000
+"""Entries of the largest state it is meant for: its matrices are dense."""
+
+MOST_STAGES, PARTS = 7, 4
+METHOD = np.dtype(
+    [
+        ("stages", np.intc),
+        ("node", float, MOST_STAGES),
+        ("weight", float, (MOST_STAGES, MOST_STAGES)),
+        ("error", float, MOST_STAGES),
+        ("value", complex, PARTS),
+        ("row", complex, (PARTS, MOST_STAGES)),
+        ("column", complex, (PARTS, MOST_STAGES)),
+    ],
+    align=True,
+)
+"""`struct method` of radau.c."""
+
+DECLARATIONS = """
+void *radau_new(const void *method, int size, int quadratures, const double *constrained, void *data, void *rate,
+                void *jacobian, double t, const double *y, double rtol, const double *atol);
+void radau_free(void *memory);
+int radau_advance(void *memory, double until, double end, double *out);
+double radau_state(const void *memory, long *counts);
+"""
+PAUSED = 1
+REASONS = {
+    -1: f"the error test failed however small the step; {SINGULAR}",
+    -2: f"Newton's method failed however small the step; {SINGULAR}",
+    -3: "the rate is not finite however small the step",
+    -4: "the constraints have no solution",
+}
+
+
+def stages_for(rtol: float) -> int:
+    """How many stages take the least time at a tolerance (benchmarks/pruning.py): 3, 5 or 7."""
+    return 3 if rtol >= 1e-5 else 5 if rtol >= 1e-9 else 7
+
+
+def tableau(stages: int) -> tuple[Array, Array]:
+    """Abscissae (stages,) in (0, 1] and weights (stages, stages) of the Radau IIA method of order 2 stages - 1."""
+    last = np.polynomial.Legendre.basis(stages) - np.polynomial.Legendre.basis(stages - 1)
+    x = np.sort(last.roots().real)
+    x[-1] = 1.0
+    for _ in range(3):  # roots of a companion matrix lack a few digits
+        x[:-1] -= last(x[:-1]) / last.deriv()(x[:-1])
+    powers = np.arange(stages)
+    slopes = np.polynomial.legendre.legvander(x, stages - 1)
+    # (P_{k+1} - P_{k-1}) / (2 k + 1) is the integral of P_k from -1
+    higher = np.polynomial.legendre.legvander(x, stages)
+    integrals = np.column_stack([x + 1.0, *((higher[:, k + 1] - higher[:, k - 1]) / (2 * k + 1) for k in powers[1:])])
+    return (1.0 + x) / 2.0, 0.5 * integrals @ np.linalg.inv(slopes)
+
+
+@lru_cache(maxsize=3)
+def method(stages: int) -> np.ndarray[Any, np.dtype[np.void]]:
+    """The method with an odd number of stages up to 7, as radau.c wants it."""
+    c, weight = tableau(stages)
+    inverse = np.linalg.inv(weight)
+    values, columns = np.linalg.eig(inverse)
+    rows = np.linalg.inv(columns)
+    kept = [int(np.argmin(np.abs(values.imag))), *np.flatnonzero(values.imag > 1e-6)]
+    twice = np.array([1.0] + [2.0] * (len(kept) - 1))  # a pair counts for both
+    # the embedded formula also takes the rate at the start, by one over the real eigenvalue; its order is `stages`
+    differs = np.linalg.solve(c ** np.arange(stages)[:, None], -np.eye(stages)[0] / values[kept[0]].real)
+    made = np.zeros((), METHOD)
+    made["stages"] = stages
+    made["node"][:stages] = c
+    made["weight"][:stages, :stages] = weight
+    made["error"][:stages] = differs @ inverse
+    made["value"][: len(kept)] = values[kept]
+    made["row"][: len(kept), :stages] = rows[kept]
+    made["column"][: len(kept), :stages] = (twice * columns[:, kept]).T
+    return made
+
+
+@lru_cache(maxsize=1)
+def _library() -> tuple[cffi.FFI, Any]:
+    ffi = cffi.FFI()
+    ffi.cdef(DECLARATIONS)
+    source = Path(__file__).with_name("radau.c").read_text()
+    return ffi, opened(lambda path: ffi.dlopen(str(path)), source)
+
+
+def radau_native(
+    kernel: Kernel, start: Array, times: Array, rtol: float, atol: Array, progress: Progress, frame: Frame
+) -> Trajectory:
+    """Integrates a NativeKernel from times[0] through all of `times`; see `integrate`."""
+    assert isinstance(kernel, NativeKernel)
+    ffi, lib = _library()
+    functions, chosen = kernel.functions(), method(stages_for(rtol))
+    first, last = float(times[0]), float(times[-1])
+    states = np.empty((len(times), kernel.size))
+    states[0] = start
+
+    def at(array: np.ndarray[Any, Any]) -> Any:
+        return ffi.cast("double *", array.ctypes.data)
+
+    addresses = (ffi.cast("void *", a) for a in (functions.data, functions.rate, functions.jacobian))
+    constrained = np.ascontiguousarray(kernel.algebraic)
+    memory = lib.radau_new(at(chosen), kernel.size, functions.quadratures, at(constrained), *addresses, first,
+                           at(states), max(rtol, LEAST_RTOL), at(atol))  # fmt: skip
+    if memory == ffi.NULL:
+        raise MemoryError(f"no room for dense matrices of {kernel.size} unknowns")
+    done, reason, counts = 1, "", ffi.new("long[3]")
+    try:
+        while done < len(times) and not reason:
+            code = lib.radau_advance(memory, float(times[done]), last, at(states[done]))
+            now = lib.radau_state(memory, counts)
+            fraction = (min(now, float(times[done])) - first) / (last - first)
+            if code == PAUSED:
+                if hopeless(counts[0], fraction):
+                    reason = f"Radau stopped at t = {now:.6g}: {counts[0]} steps did not reach the end"
+            elif code < 0:
+                reason = f"Radau stopped at t = {now:.6g} after {counts[0]} steps: {REASONS[code]}"
+            else:
+                frame(done, states[done])
+                done += 1
+            progress(fraction, counts[0])
+    finally:
+        lib.radau_free(memory)
+    return Trajectory(times[:done].copy(), states[:done], counts[1], counts[2], counts[0], not reason, reason)
