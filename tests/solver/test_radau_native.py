@@ -38,8 +38,7 @@ def test_three_stages_are_the_published_ones() -> None:
 
 @pytest.mark.parametrize("stages", STAGES)
 def test_stages_are_exact_to_their_order(stages: int) -> None:
-    """The last one integrates powers below 2 s - 1, all of them those below s; it ends the step, so the method is stiffly
-    accurate."""
+    """The last one integrates powers below 2 s - 1, all of them those below s; it stands at the end of the step."""
     c, weight = tableau(stages)
     assert c[-1] == 1.0
     for k in range(2 * stages - 1):
