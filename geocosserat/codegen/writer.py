@@ -7,7 +7,7 @@ import sympy as sp
 
 from geocosserat.codegen.printing import print_expression, print_tape
 from geocosserat.codegen.tape import Tape
-from geocosserat.discretisation.course import POINTS
+from geocosserat.discretisation.cells import POINTS
 from geocosserat.discretisation.structure import ZERO, EndStructure, Matrix, RodStructure
 from geocosserat.model.expressions import symbols, to_text
 
