@@ -1,7 +1,8 @@
 """How far ends stray from where they belong in many periods: python -m benchmarks.homing [PERIODS ...].
 
 A curled rod in space, clamped at both ends and stirred by a force that turns with it, with and without its far end
-being drawn back; and a heavy one whose base is driven to and fro. Both on the coarse grid of degree 1.
+being drawn back; and heavy ones, in space and in the plane, whose base is driven to and fro. All on the coarse grid of
+degree 1.
 """
 
 from __future__ import annotations
@@ -35,6 +36,16 @@ SHAKEN = {
     },
     "effects": [{"kind": "weight", "force": [0, 1, -4]}],
 }
+ROCKED = {
+    **SHAKEN,
+    "title": "rocked under its weight",
+    "rod": {"motion": "planar", "length": 1.0, "stiffness": [900, 400, 1], "friction": [1, 2, 0.01]},
+    "ends": {
+        "left": {"kind": "driven", "twist": ["0", "24*cos(60*t)", "30*cos(60*t)"]},
+        "right": {"kind": "free"},
+    },
+    "effects": [{"kind": "weight", "force": [1, -4]}],
+}
 PERIODS = (30, 300)
 
 
@@ -49,10 +60,11 @@ def strayed(scene: dict[str, object], node: int, periods: int, pull: float = sam
 
 
 def table(periods: tuple[int, ...] = PERIODS) -> str:
-    """All three, in Markdown."""
-    lines = ["| periods | far end drawn back | left to itself | driven base |", "|---|---|---|---|"]
+    """All four, in Markdown."""
+    lines = ["| periods | far end drawn back | left to itself | driven base | in the plane |", "|---|---|---|---|---|"]
     for n in periods:
-        found = strayed(SCENE, -1, n), strayed(SCENE, -1, n, 0.0), strayed(SHAKEN, 0, n)
+        held = strayed(SCENE, -1, n), strayed(SCENE, -1, n, 0.0)
+        found = *held, strayed(SHAKEN, 0, n), strayed(ROCKED, 0, n)
         lines.append(f"| {n} | {' | '.join(f'{x:.1e}' for x in found)} |")
     return "\n".join(lines) + "\n"
 

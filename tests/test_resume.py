@@ -52,6 +52,27 @@ def test_an_interrupted_run_goes_on_to_the_same_end(
     assert not (out / NAME).exists()
 
 
+def test_a_driven_end_goes_on_from_where_it_was(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its pose follows from the time, and that from the checkpoint: the base and the strains of the whole run."""
+    scene = {
+        "rod": {"motion": "planar", "length": 1.0, "stiffness": [60.0, 40.0, 1.0], "friction": [1.0, 2.0, 0.1]},
+        "ends": {"left": {"kind": "driven", "twist": ["cos(3*t)", "0.3*heaviside(t - 0.5)", "5*cos(7*t)"]}},
+        "effects": [{"kind": "weight", "force": [0.0, -3.0]}],
+        "run": {"until": 1.0, "frames": 21, "elements": 4, "degree": 3, "rtol": 1e-8},
+    }
+    with monkeypatch.context() as patched:
+        _interrupt_after(13, patched)
+        with pytest.raises(KeyboardInterrupt):
+            geocosserat.run(scene, tmp_path)
+    assert 2 < len(load_checkpoint(tmp_path).states) < 21
+    resumed, whole = geocosserat.run(scene, tmp_path, resume=True).solution, geocosserat.run(scene).solution
+    np.testing.assert_array_equal(resumed.position[:, 0], whole.position[:, 0])
+    np.testing.assert_allclose(resumed.position[-1], whole.position[-1], rtol=0, atol=1e-6)
+    np.testing.assert_allclose(resumed.turn[-1], whole.turn[-1], rtol=0, atol=1e-5)
+
+
 def test_a_checkpoint_of_another_scene_is_refused(
     tmp_path: Path, examples: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

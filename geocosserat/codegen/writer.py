@@ -7,6 +7,7 @@ import sympy as sp
 
 from geocosserat.codegen.printing import print_expression, print_tape
 from geocosserat.codegen.tape import Tape
+from geocosserat.discretisation.cells import POINTS
 from geocosserat.discretisation.structure import ZERO, EndStructure, Matrix, RodStructure
 from geocosserat.model.expressions import symbols, to_text
 
@@ -140,6 +141,8 @@ class Writer:
             "values": [f"value_{i + 1}" for i in range(d)],
             "frozen": [int(held) for held in s.frozen],
             "carried": s.carried,
+            "prescribed": s.prescribed and s.increments > 0,
+            "powers": POINTS + 1,
             "pose": [symbol.name for symbol in pose],
             "world": s.increments > 0,
             "placed": s.sight == "pose",

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from geocosserat.algebra.exponential import rotation_from_vector
+from geocosserat.discretisation.course import Course, course_of
 from geocosserat.discretisation.feasible import check_feasible
 from geocosserat.discretisation.mesh import Array, Mesh, make_mesh
 from geocosserat.discretisation.pose import Poses, cross_matrix, joined, march, plane_rotation
@@ -24,9 +25,11 @@ class SemiDiscrete:
     """Everything a kernel needs besides its code.
 
     uniform (.,), point (., points) and node (., nodes): coefficients in the order of the structure.
-    base: pose that poses are marched from, the angle or the rotation matrix by rows, then the position.
+    base: pose that poses are marched from, at the start, the angle or the rotation matrix by rows, then the position;
+    if it is driven and the kernel has to know, then its course as a table.
     state (size,): the initial state; turn by component (of frozen modes the stress), carried pose, two energies.
-    anchor: position and orientation of the end that poses are marched from, at the start.
+    anchor: position and orientation of the end that poses are marched from, at the start. course: its poses relative
+    to that, if it is driven.
     rest: the turn at rest, d expressions of u and t, and parameters: their parameters; what frozen modes are held at.
     quasi_static: whether a rotation has next to no friction, in place of none.
     """
@@ -40,6 +43,7 @@ class SemiDiscrete:
     base: Array
     state: Array
     anchor: Poses
+    course: Course | None
     rest: tuple[Expression, ...]
     parameters: Mapping[str, float]
     quasi_static: bool
@@ -81,14 +85,15 @@ class SemiDiscrete:
 
     def _poses(self, states: Array, times: Array | float) -> Poses:
         position, rotation, angle = self.anchor.position, self.anchor.rotation, self.anchor.angle
-        if self.structure.moving_base:
-            position, rotation, angle = self._carried(states)
+        if self.course is not None:
+            position, rotation, angle = self._moved(self.course.at(times))
+        elif self.structure.carried:
+            position, rotation, angle = self._moved(states[..., -2 - self.structure.carried : -2])
         return march(self.mesh, self.turn(states, times), position, rotation, angle, self.structure.base)
 
-    def _carried(self, states: Array) -> tuple[Array, Array, Array | None]:
-        """Pose of the base: its start, then the carried relative pose."""
-        start, count = self.anchor, self.structure.carried
-        pose = states[..., -2 - count : -2]
+    def _moved(self, pose: Array) -> tuple[Array, Array, Array | None]:
+        """Pose of the base: its start, then this relative pose, position and angle or quaternion."""
+        start = self.anchor
         if start.angle is not None:
             angle = start.angle + pose[..., 2]
             return start.position + pose[..., :2] @ start.rotation.T, plane_rotation(angle), angle
@@ -109,6 +114,15 @@ def _steps(scene: Scene) -> list[float]:
         for values in effect.values().values():
             expressions.extend(values)
     return [x for e in expressions for x in jump_positions(e, model.length, model.parameters)]
+
+
+def _course(structure: RodStructure, scene: Scene) -> Course | None:
+    """The course of the base, if it is driven."""
+    model = scene.model
+    twist = (model.left if structure.base == "left" else model.right).twist
+    if not structure.prescribed or twist is None:
+        return None
+    return course_of(twist, tuple(model.parameters.items()), scene.run.until, model.length)
 
 
 def discretise(scene: Scene, elements: int, degree: int) -> SemiDiscrete:
@@ -139,6 +153,10 @@ def discretise(scene: Scene, elements: int, degree: int) -> SemiDiscrete:
     if structure.carried == 7:
         carried[3] = 1.0  # the quaternion of no rotation
     orientation = np.atleast_1d(anchor.angle) if anchor.angle is not None else anchor.rotation.ravel()
+    base = np.concatenate([orientation, anchor.position])
+    course = _course(structure, scene)
+    if course is not None and structure.increments:
+        base = np.concatenate([base, course.table])
     tables = [
         table.values.T,
         table.slopes.T,
@@ -155,9 +173,10 @@ def discretise(scene: Scene, elements: int, degree: int) -> SemiDiscrete:
         uniform=uniform,
         point=point,
         node=node,
-        base=np.concatenate([orientation, anchor.position]),
+        base=base,
         state=np.concatenate([unknown.ravel(), carried, [0.0, 0.0]]),
         anchor=anchor,
+        course=course,
         rest=model.reference,
         parameters=model.parameters,
         quasi_static=bool(frictionless(model)),

@@ -62,7 +62,8 @@ class RodStructure:
     frozen (d): the modes held at their reference; their stress takes their place in the state.
     stiffness, mobility (d, d) and reference, reference_rate (d): names of coefficients, or "0", or "1".
     wrench, medium (d): density of wrench, and twist of the medium, in the moving frame: formulas of coefficients and
-    of what is seen. base: the end that poses are marched from; carried: its pose is part of the state.
+    of what is seen. base: the end that poses are marched from. Where it moves, its pose is part of the state (carried),
+    unless it is driven: that pose follows from the time alone (prescribed).
     """
 
     motion: Literal["planar", "spatial"]
@@ -106,9 +107,14 @@ class RodStructure:
         return {"nothing": 0, "direction": group.rotations, "pose": group.dimension}[self.sight]
 
     @property
+    def prescribed(self) -> bool:
+        """Whether the pose of the base follows from the time alone, for it is driven."""
+        return (self.left if self.base == "left" else self.right).kind == "driven"
+
+    @property
     def carried(self) -> int:
         """Number of state entries that hold the pose of the base (position and angle, or quaternion)."""
-        if not self.moving_base:
+        if self.prescribed or not self.moving_base:
             return 0
         return 3 if self.motion == "planar" else 7
 

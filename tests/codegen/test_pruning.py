@@ -78,8 +78,9 @@ def test_an_effect_adds_its_own_arguments_only(motion: str, kind: str) -> None:
 MARKS = {
     # text of C: the ends of a plain rod that leave it
     r"\bhold\(": set(HELD),
-    r"\bcarry\(": {"free free", "pinned free", "driven free", "joined"},
-    r"\bcarry_tangent\(": {"free free", "pinned free", "driven free", "joined"},
+    r"\bcarry\(": {"free free", "pinned free", "joined"},
+    r"\bcarry_tangent\(": {"free free", "pinned free", "joined"},
+    r"\bcourse\(": set(),
     r"\bjoin\(": {"joined"},
     r"\bmerge\(": {"joined"},
     r"\bclose_ring\(": {"joined"},

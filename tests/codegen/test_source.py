@@ -71,7 +71,7 @@ def test_a_kernel_says_what_it_is(name: str) -> None:
 @pytest.mark.parametrize("name", NAMES)
 def test_the_heading_says_what_the_state_holds(name: str) -> None:
     """Component by component, of frozen modes the stress, then the pose of the end that poses are marched from, if it
-    may move; and which pose the kernel is given."""
+    moves by itself; and which pose the kernel is given, of a driven one all those to come."""
     s, structure = source(name), structure_of(scene(name).model)
     names = structure.state_names
     for held, strain, stress, found in zip(
@@ -86,8 +86,10 @@ def test_the_heading_says_what_the_state_holds(name: str) -> None:
         pose = base if structure.carried else ""
         assert f"state y    {what} [{len(names)}][points]{pose}, energy dissipated, work done" in head
     frame = "angle" if name.startswith("planar") else "rotation matrix by rows"
-    start = " at the start" if structure.carried else ""
-    assert f"/* pose of the {structure.base} end{start}: {frame}, then position */" in s.c
+    moving = structure.prescribed and structure.sight != "nothing"
+    start = " at the start" if structure.carried or moving else ""
+    rest = "; how it moves from there:" if moving else " */"
+    assert f"/* pose of the {structure.base} end{start}: {frame}, then position{rest}" in s.c
     assert s.signature["state"] == list(names)
     assert s.signature["frozen"] == list(scene(name).model.frozen)
     assert (s.signature["base"], s.signature["carried"]) == (structure.base, structure.carried)
@@ -138,13 +140,14 @@ def test_equal_structures_have_equal_texts(name: str) -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_what_a_scene_does_not_name_leaves_no_trace(name: str) -> None:
-    """No function, no field and no argument for orientations, places, carried poses, frozen modes, references that
-    change, joined ends, loads or steps in time."""
+    """No function, no field and no argument for orientations, places, carried and prescribed poses, frozen modes,
+    references that change, joined ends, loads or steps in time."""
     s, structure = source(name), structure_of(scene(name).model)
     for text in (s.c, s.numpy):
         assert ("orient(" in text) == (structure.sight != "nothing")
         assert ("place_x" in text) == (structure.sight == "pose")
         assert ("carry_tangent(" in text) == bool(structure.carried)
+        assert ("course(" in text) == (structure.prescribed and structure.sight != "nothing")
         assert ("activity(" in text) == structure.active
         assert ("slack_" in text) == structure.indeterminate
         assert ("the ends are joined" in text) == structure.joined

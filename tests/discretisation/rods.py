@@ -151,7 +151,7 @@ LENGTH = 1.3
 def _rod(motion: str, material: Mapping[str, Any], **more: Any) -> dict[str, Any]:
     turned = {"angle": 0.7} if motion == "planar" else {"rotation": [0.3, -0.4, 0.7]}
     place = [0.3, -0.2] if motion == "planar" else [0.3, -0.2, 0.5]
-    values = {"rod": {"motion": motion, "length": LENGTH, **material}, "run": {"until": 1.0}}
+    values = {"rod": {"motion": motion, "length": LENGTH, **material}, "run": {"until": 7.0}}
     return values | {"start": turned | {"position": place}} | more
 
 

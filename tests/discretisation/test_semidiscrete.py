@@ -42,7 +42,7 @@ def named(rod: SemiDiscrete, name: str) -> Array | float:
 @pytest.mark.parametrize("name", NAMES)
 def test_shapes_are_those_of_the_contract(name: str, size: tuple[int, int]) -> None:
     """Turn by component (of frozen modes the stress), then a carried pose, then two energies; coefficients in the order
-    of the structure; the base's orientation, then its place."""
+    of the structure; the base's orientation, then its place, then its course if that is prescribed and matters."""
     r = rod(name, *size)
     d, Q = r.structure.group.dimension, r.mesh.elements * r.mesh.degree
     assert r.state.shape == (d * Q + r.structure.carried + 2,)
@@ -50,7 +50,10 @@ def test_shapes_are_those_of_the_contract(name: str, size: tuple[int, int]) -> N
     assert r.uniform.shape == (len(r.structure.at("uniform")),)
     assert r.point.shape == (len(r.structure.at("point")), Q)
     assert r.node.shape == (len(r.structure.at("node")), Q + 1)
-    assert r.base.shape == ((3,) if d == 3 else (12,))
+    course = r.course.table if r.course is not None and r.structure.sight != "nothing" else np.empty(0)
+    assert r.base.shape == ((3 if d == 3 else 12) + len(course),)
+    np.testing.assert_array_equal(r.base[3 if d == 3 else 12 :], course)
+    assert (r.course is not None) == ("driven" in (scene(name).model.left.kind, scene(name).model.right.kind))
     assert r.algebraic.shape == r.state.shape
     assert r.turn(np.stack([r.state] * 3)).shape == r.turn(np.stack([r.state] * 3), np.zeros(3)).shape == (3, d, Q)
     assert all(np.all(np.isfinite(a)) for a in (r.uniform, r.point, r.node, r.tables, r.base, r.state))
@@ -167,7 +170,7 @@ def test_a_far_end_that_is_held_belongs_where_it_starts(name: str) -> None:
 @pytest.mark.parametrize("size", SIZES, ids=str)
 @pytest.mark.parametrize("name", NAMES)
 def test_poses_of_any_state_are_those_of_the_exact_march(name: str, size: tuple[int, int]) -> None:
-    """From the base, carried or not, to 40 digits and back: the same collocation, written twice."""
+    """From the base, carried, prescribed or still, to 40 digits and back: the same collocation, written twice."""
     r = rod(name, *size)
     exact, y = oracle.Rod(scene(name), r.mesh.edges, r.mesh.degree, r.base), random_state(r, 31)
     found = r.poses(y, 0.3)

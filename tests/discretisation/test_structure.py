@@ -214,7 +214,8 @@ def test_a_planar_dead_torque_is_a_body_torque() -> None:
 @pytest.mark.parametrize("motion", MOTIONS)
 def test_poses_are_marched_from_the_end_that_is_held_best(motion: str) -> None:
     """A driven one before a clamped one before a pinned one before a free one, the left one if both are alike. Unless
-    the base is clamped, its pose is carried: position and angle, or position and quaternion."""
+    the base is clamped, or driven on a course that is known ahead, its pose is carried: position and angle, or position
+    and quaternion."""
     ends = {"driven": driven(motion), "clamped": CLAMPED, "pinned": PINNED, "free": FREE}
     order = list(ends)
     for left in ends:
@@ -222,7 +223,8 @@ def test_poses_are_marched_from_the_end_that_is_held_best(motion: str) -> None:
             found = structure(f"{motion} plain", ends={"left": ends[left], "right": ends[right]})
             assert found.base == ("left" if order.index(left) <= order.index(right) else "right")
             best = left if found.base == "left" else right
-            assert found.carried == (0 if best == "clamped" else 3 if motion == "planar" else 7)
+            assert found.carried == (0 if best in ("clamped", "driven") else 3 if motion == "planar" else 7)
+            assert found.prescribed == (best == "driven")
 
 
 STIRRED: dict[str, dict[str, Any]] = {

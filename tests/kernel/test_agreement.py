@@ -136,3 +136,21 @@ def test_unequal_elements_are_no_special_case(motion: str, backend: str) -> None
     direction = np.random.default_rng(9).normal(size=len(y))
     slope, J = oracle.floats(exact.derivative(T, y, direction)), k.jacobian(T, y)
     assert np.all(np.abs(J @ direction - slope)[:-2] <= 1e-13 * (np.abs(J) @ np.abs(direction))[:-2])
+
+
+@pytest.mark.parametrize("backend", ["numpy", "c"])
+@pytest.mark.parametrize("name", ["planar towed", "spatial swept"])
+def test_a_driven_base_is_seen_at_every_time_of_the_run_and_at_no_other(name: str, backend: str) -> None:
+    """In any cell of its course, on its edges and at both ends, as the other language sees it; outside there is no
+    rate, rather than a wrong one."""
+    case = Case(name, 4, 2, backend)
+    course, y, other = rod(*case[:3]).course, state(case, 24), case._replace(backend="numpy")
+    assert course is not None
+    edges = course.edges
+    for t in (*edges[[0, 1, 17, -2, -1]], *np.random.default_rng(3).uniform(edges[0], edges[-1], 20)):
+        wanted = rate(other, t, y)
+        np.testing.assert_allclose(rate(case, t, y), wanted, rtol=0, atol=1e-13 * np.abs(wanted).max())
+    before = rate(case, np.nextafter(edges[5], 0), y)
+    np.testing.assert_allclose(rate(case, edges[5], y), before, rtol=0, atol=1e-13 * np.abs(before).max())
+    for t in (edges[0] - 0.1, edges[-1] + 0.1):
+        assert np.isnan(rate(case, t, y)).any()
