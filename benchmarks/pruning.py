@@ -1,8 +1,9 @@
 """What each mode and each effect costs: python -m benchmarks.pruning.
 
 The same motion, a rod that relaxes in its plane, by models with ever less in them; then one effect at a time on top of
-the planar and of the spatial rod. Seconds are those of the integration at the cheapest of a set of settings whose tip
-is within 1e-6 of the length of that model's own converged tip.
+the planar and of the spatial rod. Seconds are those of the integration at the cheapest of a set of settings (degree,
+method, tolerance) whose tip is within 1e-6 of the length of that model's own converged tip. For the smallest and the
+largest model of the heavy rod also at other accuracies.
 """
 
 from __future__ import annotations
@@ -24,8 +25,16 @@ from geocosserat.simulation import tolerances
 from geocosserat.solver.integrate import integrate
 
 WANTED, REPEATS = 1e-6, 5
-SETTINGS = [Setting(1, p, rtol) for p, rtol in product((5, 6, 7, 8, 10, 12), (1e-5, 1e-6, 1e-7, 1e-8))]
-FINE = Setting(1, 18, 1e-11)
+ACCURACIES = tuple(10.0**-k for k in range(4, 11))
+METHODS = ("cvode", "radau")
+How = tuple[str, Setting]
+SETTINGS: list[How] = [
+    (method, Setting(1, p, 10.0**-k)) for method, p, k in product(METHODS, (5, 6, 7, 8, 10, 12), range(3, 9))
+]
+MORE: list[How] = [
+    (method, Setting(1, p, 10.0**-k)) for method, p, k in product(METHODS, (8, 9, 10, 12, 14, 16), range(3, 12))
+]
+FINE: How = ("radau", Setting(1, 20, 1e-12))
 BEND = "3*(1 - u)**2*(1 + 2*u)"
 
 
@@ -81,33 +90,55 @@ def effects(motion: str) -> Mapping[str, dict[str, Any]]:
     }
 
 
-def solve(which: Scene, setting: Setting) -> tuple[np.ndarray, float, int, int]:
+def solve(which: Scene, how: How) -> tuple[np.ndarray, float, int, int]:
     """Position of the tip, seconds of the integration, unknowns, and operations of a rate at a point and a node."""
+    method, setting = how
     rod = discretise(which, setting.elements, setting.degree)
     text = kernel_text(rod.structure)
     kernel = load(text, rod, "c")
     atol = tolerances(rod, setting.rtol, None, 1.0)
     times = np.array([0.0, which.run.until])
     start = time.perf_counter()
-    found = integrate(kernel, rod.state, times, rtol=setting.rtol, atol=atol)
+    found = integrate(kernel, rod.state, times, method, setting.rtol, atol)
     seconds = time.perf_counter() - start
     poses = rod.poses(found.states[-1], times[-1])
     operations = sum(count for name, count in text.signature["operations"].items() if name != "tangent")
     return np.append(poses.position[-1], poses.rotation[-1]), seconds, rod.unknowns, operations
 
 
-def cheapest(which: Scene) -> tuple[Setting, float, float, int, int]:
-    """The setting, its least and median seconds, unknowns and operations."""
+def tried(which: Scene, settings: list[How]) -> list[tuple[float, float, How]]:
+    """Error, seconds (the better of two) and setting of each one."""
     exact = solve(which, FINE)[0]
-    good = []
-    for setting in SETTINGS:
-        found, seconds, *_ = min((solve(which, setting) for _ in range(2)), key=lambda run: run[1])
-        if np.abs(found - exact).max() <= WANTED:
-            good.append((seconds, setting))
-    setting = min(good, key=lambda pair: pair[0])[1]
-    runs = [solve(which, setting) for _ in range(REPEATS)]
+    found = []
+    for how in settings:
+        runs = [solve(which, how) for _ in range(2)]
+        found.append((float(np.abs(runs[0][0] - exact).max()), min(run[1] for run in runs), how))
+    return found
+
+
+def cheapest(which: Scene) -> tuple[How, float, float, int, int]:
+    """The setting, its least and median seconds, unknowns and operations."""
+    good = [(seconds, how) for error, seconds, how in tried(which, SETTINGS) if error <= WANTED]
+    how = min(good, key=lambda pair: pair[0])[1]
+    runs = [solve(which, how) for _ in range(REPEATS)]
     seconds = [run[1] for run in runs]
-    return setting, min(seconds), float(np.median(seconds)), runs[0][2], runs[0][3]
+    return how, min(seconds), float(np.median(seconds)), runs[0][2], runs[0][3]
+
+
+def by_accuracy() -> list[str]:
+    """Lines of a table: the smallest and the largest model of the heavy rod, each by the cheapest way to an accuracy."""
+    scenes = dict(heavy())
+    names = ("planar, inextensible and unshearable", "spatial Cosserat")
+    small, large = (tried(scenes[name], MORE) for name in names)
+    lines = [f"| accuracy | {names[0]}: ms, how | {names[1]}: ms, how | ratio |", "|---|---|---|---|"]
+    for accuracy in ACCURACIES:
+        reached = [[run for run in runs if run[0] <= accuracy] for runs in (small, large)]
+        if not all(reached):
+            break
+        best = [min(runs, key=lambda run: run[1]) for runs in reached]
+        cells = [f"{1e3 * s:.2f}, {method}, degree {at.degree}, rtol {at.rtol:.0e}" for _, s, (method, at) in best]
+        lines.append(f"| {accuracy:.0e} | {' | '.join(cells)} | {best[1][1] / best[0][1]:.1f} |")
+    return lines
 
 
 def table(rows: Iterator[tuple[str, Scene]], against: str) -> list[str]:
@@ -115,12 +146,12 @@ def table(rows: Iterator[tuple[str, Scene]], against: str) -> list[str]:
     found = {name: cheapest(which) for name, which in rows}
     unit = found[against][1]
     lines = [
-        f"| | degree | unknowns | operations | ms, min (median) | relative to {against} |",
+        f"| | method, degree | unknowns | operations | ms, min (median) | relative to {against} |",
         "|---|---|---|---|---|---|",
     ]
-    for name, (setting, least, median, unknowns, operations) in found.items():
-        times = f"{1e3 * least:.2f} ({1e3 * median:.2f})"
-        lines.append(f"| {name} | {setting.degree} | {unknowns} | {operations} | {times} | {least / unit:.2f} |")
+    for name, ((method, setting), least, median, unknowns, operations) in found.items():
+        cells = name, f"{method}, {setting.degree}", unknowns, operations, f"{1e3 * least:.2f} ({1e3 * median:.2f})"
+        lines.append(f"| {' | '.join(map(str, cells))} | {least / unit:.2f} |")
     return lines
 
 
@@ -136,6 +167,7 @@ def report() -> str:
     lines += table(models(), "planar, inextensible and unshearable")
     lines += ["", "The same under its weight, which makes the rod see the world", ""]
     lines += table(heavy(), "planar, inextensible and unshearable")
+    lines += ["", "The heavy rod at other accuracies", "", *by_accuracy()]
     for motion in ("planar", "spatial"):
         lines += ["", f"Effects, one at a time, {motion}", "", *table(with_effects(motion), f"{motion} rod")]
     return "\n".join(lines) + "\n"
