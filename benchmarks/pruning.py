@@ -130,7 +130,7 @@ def by_accuracy() -> list[str]:
     scenes = dict(heavy())
     names = ("planar, inextensible and unshearable", "spatial Cosserat")
     small, large = (tried(scenes[name], MORE) for name in names)
-    lines = [f"| accuracy | {names[0]}: ms, how | {names[1]}: ms, how | ratio |", "|---|---|---|---|"]
+    lines = [f"| accuracy | ms, how: {' | '.join(names)} | ratio |", "|---|---|---|---|"]
     for accuracy in ACCURACIES:
         reached = [[run for run in runs if run[0] <= accuracy] for runs in (small, large)]
         if not all(reached):
@@ -146,7 +146,7 @@ def table(rows: Iterator[tuple[str, Scene]], against: str) -> list[str]:
     found = {name: cheapest(which) for name, which in rows}
     unit = found[against][1]
     lines = [
-        f"| | method, degree | unknowns | operations | ms, min (median) | relative to {against} |",
+        f"| | method, degree | unknowns | operations | ms, min (median) | to {against} |",
         "|---|---|---|---|---|---|",
     ]
     for name, ((method, setting), least, median, unknowns, operations) in found.items():
