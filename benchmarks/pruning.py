@@ -126,7 +126,7 @@ def cheapest(which: Scene) -> tuple[How, float, float, int, int]:
 
 
 def by_accuracy() -> list[str]:
-    """Lines of a table: the smallest and the largest model of the heavy rod, each by the cheapest way to an accuracy."""
+    """Lines of a table: the smallest and the largest model of the heavy rod, by the cheapest way to an accuracy."""
     scenes = dict(heavy())
     names = ("planar, inextensible and unshearable", "spatial Cosserat")
     small, large = (tried(scenes[name], MORE) for name in names)
