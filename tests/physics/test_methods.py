@@ -33,6 +33,21 @@ def test_all_methods_agree(name: str, method: str) -> None:
 
 
 @pytest.mark.usefixtures("c_compiler")
+@pytest.mark.parametrize("name", [*SCENES, "euler_bernoulli", "kirchhoff"])
+def test_radau_in_c_agrees_with_cvode(name: str) -> None:
+    """Positions and ledger, with frozen modes and without, in far fewer steps; tighter tolerances come closer."""
+    scene = SCENES.get(name) or example(name)
+    exact = _everything(scene, 6, 1e-11, backend="c")
+    loose, tight = (
+        np.abs(_everything(scene, 6, rtol, method="radau", backend="c") - exact).max() for rtol in (1e-3, 1e-8)
+    )
+    assert loose < 1e-2
+    assert tight < 1e-7
+    ours, other = (simulate(scene, 1, 6, 1e-8, "c", method=m).evaluations["steps"] for m in ("radau", "cvode"))
+    assert 3 * ours < other
+
+
+@pytest.mark.usefixtures("c_compiler")
 @pytest.mark.parametrize("method", ["cvode", "bdf"])
 @pytest.mark.parametrize("scene", [SCENES["sinking"], CURLED], ids=["sinking", "curled"])
 def test_numpy_gives_what_c_gives(scene: Scene, method: str, monkeypatch: pytest.MonkeyPatch) -> None:
