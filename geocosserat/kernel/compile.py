@@ -15,7 +15,8 @@ from typing import TypeVar
 from geocosserat.kernel.places import cache_folder
 
 FLAGS = ("-std=c99", "-O3", "-march=native", "-fno-math-errno", "-ffp-contract=fast", "-fPIC", "-shared")
-"""Strict floating point: no -ffast-math. Without errno, sqrt and the like need no call."""
+"""Strict floating point but for products that are added in one rounding: no -ffast-math. Without errno, sqrt and the
+like need no call."""
 
 PATIENCE = 600.0
 """Seconds that a compiler is given."""
