@@ -1,8 +1,8 @@
 """How far ends stray from where they belong in many periods: python -m benchmarks.homing [PERIODS ...].
 
 A curled rod in space, clamped at both ends and stirred by a force that turns with it, with and without its far end
-being drawn back; and heavy ones, in space and in the plane, whose base is driven to and fro. All on the coarse grid of
-degree 1.
+being drawn back; one that is driven at both ends; and heavy ones, in space and in the plane, whose base is driven to
+and fro. All on the coarse grid of degree 1.
 """
 
 from __future__ import annotations
@@ -46,6 +46,11 @@ ROCKED = {
     },
     "effects": [{"kind": "weight", "force": [1, -4]}],
 }
+WAVED = {**SHAKEN, "title": "driven at both ends"}
+WAVED["ends"] = {
+    "left": SHAKEN["ends"]["left"],  # type: ignore[index]
+    "right": {"kind": "driven", "twist": ["0", "0", "12*cos(60*t)", "0", "30*cos(60*t)", "0"]},
+}
 PERIODS = (30, 300)
 
 
@@ -60,11 +65,12 @@ def strayed(scene: dict[str, object], node: int, periods: int, pull: float = sam
 
 
 def table(periods: tuple[int, ...] = PERIODS) -> str:
-    """All four, in Markdown."""
-    lines = ["| periods | far end drawn back | left to itself | driven base | in the plane |", "|---|---|---|---|---|"]
+    """All of them, in Markdown."""
+    heading = "| periods | far end drawn back | left to itself | both driven, far end | driven base | in the plane |"
+    lines = [heading, "|---|---|---|---|---|---|"]
     for n in periods:
         held = strayed(SCENE, -1, n), strayed(SCENE, -1, n, 0.0)
-        found = *held, strayed(SHAKEN, 0, n), strayed(ROCKED, 0, n)
+        found = *held, strayed(WAVED, -1, n), strayed(SHAKEN, 0, n), strayed(ROCKED, 0, n)
         lines.append(f"| {n} | {' | '.join(f'{x:.1e}' for x in found)} |")
     return "\n".join(lines) + "\n"
 

@@ -110,9 +110,12 @@ def drift(rod: SemiDiscrete, trajectory: Trajectory) -> float:
     first, last = (rod.poses(trajectory.states[i], trajectory.times[i]).position for i in (0, -1))
     if structure.joined:
         return float(np.linalg.norm(last[-1] - last[0]))
-    if not {structure.left.kind, structure.right.kind} <= {"clamped", "pinned"}:
+    far = -1 if structure.base == "left" else 0
+    kind = (structure.right if structure.base == "left" else structure.left).kind
+    if kind == "free":
         return 0.0
-    return float(np.linalg.norm((last - first)[[0, -1]], axis=1).max())
+    home = first[far] if rod.guide is None else rod.guide.at(trajectory.times[-1])[: first.shape[-1]]
+    return float(np.linalg.norm(last[far] - home))
 
 
 def switches_of(scene: Scene) -> tuple[float, ...]:

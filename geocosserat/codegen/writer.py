@@ -8,7 +8,7 @@ import sympy as sp
 from geocosserat.codegen.printing import print_expression, print_tape
 from geocosserat.codegen.tape import Tape
 from geocosserat.discretisation.cells import POINTS
-from geocosserat.discretisation.structure import ZERO, EndStructure, Matrix, RodStructure
+from geocosserat.discretisation.structure import ZERO, EndStructure, Matrix, RodStructure, guide
 from geocosserat.model.expressions import symbols, to_text
 
 
@@ -17,7 +17,7 @@ class Block:
     """A tape printed for one language, with the coefficients it needs by place as (name, slot) pairs.
 
     timed, timed_along: (name, code) of coefficients that depend on time, and of those that vary along the rod too.
-    seen: (name, slot) of what it sees of the world. needs: names of all its inputs.
+    seen: (name, slot) of what it sees of the world; guided: of where an end belongs. needs: names of all its inputs.
     """
 
     uniform: list[tuple[str, int]]
@@ -26,6 +26,7 @@ class Block:
     timed: list[tuple[str, str]]
     timed_along: list[tuple[str, str]]
     seen: list[tuple[str, int]]
+    guided: list[tuple[str, int]]
     steps: list[tuple[str, str]]
     outputs: list[tuple[str, str]]
     needs: frozenset[str]
@@ -64,6 +65,7 @@ class Writer:
             place: {c.name: i for i, c in enumerate(structure.at(place))} for place in ("uniform", "point", "node")
         }
         self.seen = seen_slots(structure.motion)
+        self.guide = [name.replace(".", "_") for name in guide(structure.group.space)]
 
     def block(self, *tapes: Tape) -> Block:
         """The tapes one after the other, with all that they read."""
@@ -87,8 +89,9 @@ class Writer:
             code[c.place != "uniform"].append((c.name, print_expression(c.expression, self.language, name)))
         place = {p: [(name, i) for name, i in slots.items() if name in used] for p, slots in self.slots.items()}
         seen = [(name, i) for name, i in self.seen.items() if name in used]
+        guided = [(name, i) for i, name in enumerate(self.guide) if name in used]
         return Block(
-            place["uniform"], place["point"], place["node"], code[False], code[True], seen, steps, outputs, used
+            place["uniform"], place["point"], place["node"], code[False], code[True], seen, guided, steps, outputs, used
         )
 
     def end(self, side: str, end: EndStructure, tapes: dict[str, Tape]) -> dict[str, Any]:
@@ -142,6 +145,7 @@ class Writer:
             "frozen": [int(held) for held in s.frozen],
             "carried": s.carried,
             "prescribed": s.prescribed and s.increments > 0,
+            "guided": s.guided,
             "powers": POINTS + 1,
             "pose": [symbol.name for symbol in pose],
             "world": s.increments > 0,

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from geocosserat.discretisation.cells import POINTS, POWERS, Array, Twist, solved
 from geocosserat.discretisation.quaternions import of_unit_norm, product, turn
@@ -48,6 +49,13 @@ class Course:
         for k in range(1, POINTS + 1):
             pose = pose * x + self.powers[cell, k]
         return np.where(np.abs(x) < 1.01, pose, np.nan)
+
+    def placed(self, position: Array, rotation: Array, angle: Array | None = None) -> "Course":
+        """The course of an end whose start has this pose, instead of relative to it."""
+        turned = [float(angle)] if angle is not None else Rotation.from_matrix(rotation).as_quat(scalar_first=True)
+        start = np.concatenate([position, turned])[:, None]
+        series = np.moveaxis(self.powers, -1, 0)[..., ::-1]
+        return Course(self.edges, np.moveaxis(_moved(start, series)[..., ::-1], 0, -1))
 
     @property
     def table(self) -> Array:

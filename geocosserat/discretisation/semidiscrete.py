@@ -14,7 +14,7 @@ from geocosserat.discretisation.sampling import along, frictionless, sample
 from geocosserat.discretisation.structure import RodStructure
 from geocosserat.discretisation.structuring import structure_of
 from geocosserat.model.expressions import Expression, evaluate, jump_positions
-from geocosserat.model.records import Scene
+from geocosserat.model.records import End, Scene
 
 BATCH = 2**22
 """Numbers that the linear systems of a march may take at once."""
@@ -26,10 +26,10 @@ class SemiDiscrete:
 
     uniform (.,), point (., points) and node (., nodes): coefficients in the order of the structure.
     base: pose that poses are marched from, at the start, the angle or the rotation matrix by rows, then the position;
-    if it is driven and the kernel has to know, then its course as a table.
+    if it is driven and the kernel has to know, then its course as a table, and that of the other end if guided.
     state (size,): the initial state; turn by component (of frozen modes the stress), carried pose, two energies.
     anchor: position and orientation of the end that poses are marched from, at the start. course: its poses relative
-    to that, if it is driven.
+    to that, if it is driven. guide: the poses at which the other end belongs, if it is driven as well.
     rest: the turn at rest, d expressions of u and t, and parameters: their parameters; what frozen modes are held at.
     quasi_static: whether a rotation has next to no friction, in place of none.
     """
@@ -44,6 +44,7 @@ class SemiDiscrete:
     state: Array
     anchor: Poses
     course: Course | None
+    guide: Course | None
     rest: tuple[Expression, ...]
     parameters: Mapping[str, float]
     quasi_static: bool
@@ -116,13 +117,11 @@ def _steps(scene: Scene) -> list[float]:
     return [x for e in expressions for x in jump_positions(e, model.length, model.parameters)]
 
 
-def _course(structure: RodStructure, scene: Scene) -> Course | None:
-    """The course of the base, if it is driven."""
-    model = scene.model
-    twist = (model.left if structure.base == "left" else model.right).twist
-    if not structure.prescribed or twist is None:
+def _course(end: End, scene: Scene) -> Course | None:
+    """The course of an end, if it is driven."""
+    if end.twist is None:
         return None
-    return course_of(twist, tuple(model.parameters.items()), scene.run.until, model.length)
+    return course_of(end.twist, tuple(scene.model.parameters.items()), scene.run.until, scene.model.length)
 
 
 def discretise(scene: Scene, elements: int, degree: int) -> SemiDiscrete:
@@ -154,9 +153,16 @@ def discretise(scene: Scene, elements: int, degree: int) -> SemiDiscrete:
         carried[3] = 1.0  # the quaternion of no rotation
     orientation = np.atleast_1d(anchor.angle) if anchor.angle is not None else anchor.rotation.ravel()
     base = np.concatenate([orientation, anchor.position])
-    course = _course(structure, scene)
+    ends = (model.left, model.right) if structure.base == "left" else (model.right, model.left)
+    course, guide = (_course(end, scene) for end in ends)
     if course is not None and structure.increments:
         base = np.concatenate([base, course.table])
+    if guide is not None:
+        far = -1 if structure.base == "left" else 0
+        guide = guide.placed(
+            placed.position[far], placed.rotation[far], None if placed.angle is None else placed.angle[far]
+        )
+        base = np.concatenate([base, guide.table])
     tables = [
         table.values.T,
         table.slopes.T,
@@ -177,6 +183,7 @@ def discretise(scene: Scene, elements: int, degree: int) -> SemiDiscrete:
         state=np.concatenate([unknown.ravel(), carried, [0.0, 0.0]]),
         anchor=anchor,
         course=course,
+        guide=guide,
         rest=model.reference,
         parameters=model.parameters,
         quasi_static=bool(frictionless(model)),

@@ -112,6 +112,11 @@ class RodStructure:
         return (self.left if self.base == "left" else self.right).kind == "driven"
 
     @property
+    def guided(self) -> bool:
+        """Whether both ends are driven: then the other one is drawn to where it belongs, which follows likewise."""
+        return self.left.kind == self.right.kind == "driven"
+
+    @property
     def carried(self) -> int:
         """Number of state entries that hold the pose of the base (position and angle, or quaternion)."""
         if self.prescribed or not self.moving_base:
@@ -163,6 +168,11 @@ class RodStructure:
                 [c.name, c.place, to_text(c.expression) if c.timed and c.expression else ""] for c in self.coefficients
             ],
         }
+
+
+def guide(space: int) -> Row:
+    """Names of the pose of a course, as formulas use them: position and angle, or position and quaternion."""
+    return tuple(f"home.{name}" for name in ("x", "y", "angle") if space == 2) or tuple(f"home.{c}" for c in "xyzabcd")
 
 
 def present(formulas: Formulas) -> bool:

@@ -13,6 +13,7 @@ from geocosserat.discretisation.structure import (
     Matrix,
     Place,
     RodStructure,
+    guide,
     present,
 )
 from geocosserat.model.effects.effect import Effect, together
@@ -28,7 +29,7 @@ from geocosserat.model.expressions import (
     symbols,
 )
 from geocosserat.model.records import End, RodModel
-from geocosserat.model.seen import cross, nothing, seen
+from geocosserat.model.seen import AXES, Seen, cross, nothing, seen
 
 FIRMNESS = ("free", "pinned", "clamped", "driven")
 """Kinds of end, the later the better to march poses from: the other end, if it does not move, is held in its place."""
@@ -77,6 +78,11 @@ class _Names:
                 return Binary(operator, self._inputs(left, varying), self._inputs(right, varying))
             case _:
                 return e
+
+    def sampled(self, name: str) -> Expression:
+        """A number that is no expression of the scene's."""
+        self.found[name] = Coefficient(name, "uniform")
+        return Symbol(name)
 
     def stiffness(self, matrix: Sequence[Sequence[Expression]], frozen: Sequence[bool]) -> Matrix:
         """Names of a symmetric matrix: both halves share a name; frozen modes have none."""
@@ -173,29 +179,52 @@ def _homing(names: _Names, side: str, end: EndStructure, space: int) -> EndStruc
     """The same end, drawn back to its place by as much as it strays from there.
 
     Where the base of the poses is the other end, nothing but the strains says where this one is, and those carry the
-    error of the scheme: once, where the rod settles, but over and over where it is stirred. So its twist is then not
-    zero but -pull times its distance from home: zero but for that error.
+    error of the scheme: once, where the rod settles, but over and over where it is stirred. So its twist is not just
+    what is prescribed but less pull times its distance from home: that changes nothing but that error.
     """
+    frame = seen(space)
+    home = _guide(space) if end.kind == "driven" else _place(names, side, end.kind, space)
+    back = frame.to_body(tuple(there - here for there, here in zip(home.position, frame.position, strict=True)))
+    if home.axes:
+        sights = [frame.to_body([row[i] for row in home.axes]) for i in range(space)]  # its axes as this end sees them
+        units = [tuple(Number(float(i == j)) for j in range(space)) for i in range(space)]
+        turns = [cross(unit, sight) for unit, sight in zip(units, sights, strict=True)]
+        back = (*back, *(turns[0] if space == 2 else (0.5 * x for x in together(turns, 3))))
+    pull = names.sampled(f"{side}_pull")
+    prescribed = end.twist or nothing(len(back))
+    return replace(end, twist=tuple(x + pull * y for x, y in zip(prescribed, back, strict=True)))
 
-    def home(name: str) -> Expression:
-        names.found[f"{side}_{name}"] = Coefficient(f"{side}_{name}", "uniform")
-        return Symbol(f"{side}_{name}")
 
-    frame, pull = seen(space), home("pull")
-    place = tuple(home(f"home_{axis}") for axis in "xyz"[:space])
-    back = frame.to_body(tuple(there - here for there, here in zip(place, frame.position, strict=True)))
-    twist = tuple(pull * x for x in back)
-    if end.kind == "clamped":
-        if space == 2:
-            (c, _), (s, _) = frame.axes
-            turn: Formulas = (c * home("home_sin") - s * home("home_cos"),)
-        else:
-            axes = [tuple(home(f"home_{i}{axis}") for axis in "xyz") for i in (1, 2, 3)]
-            units = [tuple(Number(float(i == j)) for j in range(3)) for i in range(3)]
-            turns = [cross(unit, frame.to_body(axis)) for unit, axis in zip(units, axes, strict=True)]
-            turn = tuple(0.5 * x for x in together(turns, 3))
-        twist = (*twist, *(pull * x for x in turn))
-    return replace(end, twist=twist)
+def _place(names: _Names, side: str, kind: str, space: int) -> Seen:
+    """Where an end belongs that stays where it is, and, if it is clamped, how it is turned there."""
+    position = tuple(names.sampled(f"{side}_home_{axis}") for axis in AXES[:space])
+    if kind == "pinned":
+        return Seen((), position)
+    if space == 2:
+        c, s = names.sampled(f"{side}_home_cos"), names.sampled(f"{side}_home_sin")
+        return Seen(((c, -s), (s, c)), position)
+    axes = tuple(tuple(names.sampled(f"{side}_home_{i}{axis}") for i in (1, 2, 3)) for axis in AXES)
+    return Seen(axes, position)
+
+
+def _guide(space: int) -> Seen:
+    """Where an end belongs that follows a course, and how it is turned there."""
+    position = tuple(Symbol(name) for name in guide(space)[:space])
+    if space == 2:
+        angle = Symbol(guide(space)[2])
+        c, s = Call("cos", angle), Call("sin", angle)
+        return Seen(((c, -s), (s, c)), position)
+    a, *v = (Symbol(name) for name in guide(space)[3:])
+    # of a unit quaternion
+    rows = []
+    for i in range(3):
+        j, k = (i + 1) % 3, (i + 2) % 3
+        row: list[Expression] = [Number(0.0)] * 3
+        row[i] = 1.0 - 2.0 * (v[j] * v[j] + v[k] * v[k])
+        row[j] = 2.0 * (v[i] * v[j] - a * v[k])
+        row[k] = 2.0 * (v[i] * v[k] + a * v[j])
+        rows.append(tuple(row))
+    return Seen(tuple(rows), position)
 
 
 def _named_effects(names: _Names, effects: Sequence[Effect]) -> list[Effect]:
@@ -235,13 +264,13 @@ def structure_of(model: RodModel) -> RodStructure:
     base = "left" if FIRMNESS.index(model.left.kind) >= FIRMNESS.index(model.right.kind) else "right"
     held = model.joined or "free" not in (model.left.kind, model.right.kind)
     stirred = held and not model.joined and _stirred(model)
-    if stirred and base == "left" and right.kind in ("clamped", "pinned"):
+    if stirred and base == "left":
         right = _homing(names, "right", right, group.space)
-    elif stirred and base == "right" and left.kind in ("clamped", "pinned"):
+    elif stirred:
         left = _homing(names, "left", left, group.space)
     for stress, frozen_mode in zip(group.stress, frozen, strict=True):
         if held and frozen_mode:
-            names.found[f"slack_{stress}"] = Coefficient(f"slack_{stress}", "uniform")
+            names.sampled(f"slack_{stress}")
     return RodStructure(
         motion="planar" if group.translations == 2 else "spatial",
         frozen=frozen,

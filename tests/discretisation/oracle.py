@@ -286,9 +286,11 @@ class Rod:
         self.base_node = 0 if firmness[0] >= firmness[1] else self.N - 1
         base_kind = FIRM[max(firmness)]
         self.carried = 0 if base_kind in ("clamped", "driven") else 3 if self.planar else 7
-        self.told = (model.left, model.right)[int(self.base_node > 0)].twist if base_kind == "driven" else None
-        """The twist of the base, if it moves as it is told."""
+        self.told = {node: end.twist for node, end in self.ends if end.kind == "driven"}
+        """The twists of ends that move as they are told."""
         self._courses: dict[Any, tuple[Array, Array]] = {}
+        start = [self.vector(scene.start.strain, {"u": u}) for u in self.u_point]
+        self.start = self.poses(np.stack(start, axis=1), None)
         self._references: dict[Any, Array] = {}
 
     def gather(self, local: Sequence[Array]) -> Array:
@@ -398,23 +400,26 @@ class Rod:
 
     def moved(self, t: Any, pose: Array) -> tuple[Array, Array] | None:
         """Rotation (3, 3) and place (3,) of the base seen from where it started; None if it cannot move."""
-        if self.told is not None:
-            if t not in self._courses:
-                self._courses[t] = self.course(t)
-            return self._courses[t]
+        if self.base_node in self.told:
+            return self.course(self.base_node, t)
         if not self.carried:
             return None
         gone = zeros(3)
         gone[: self.space] = pose[: self.space]
         return about_normal(pose[2]) if self.planar else turned(pose[3:]), gone
 
-    def course(self, t: Any) -> tuple[Array, Array]:
-        """The same of a base that moves as it is told: collocated in time as frames are along the rod, of order 16 in
+    def course(self, node: int, t: Any) -> tuple[Array, Array]:
+        """The same of an end that moves as it is told: collocated in time as frames are along the rod, of order 16 in
         steps of at most an eighth, which is exact to 20 digits and more."""
+        if (node, t) not in self._courses:
+            self._courses[node, t] = self._course(node, t)
+        return self._courses[node, t]
+
+    def _course(self, node: int, t: Any) -> tuple[Array, Array]:
         table, steps = element(8), max(1, int(MP.ceil(8 * t)))
         half, R, r = MP.mpf(t) / (2 * steps), numbers(np.eye(3)), zeros(3)
         for k in range(steps):
-            twists = [self.six(self.vector(self.told or (), {"t": half * (2 * k + 1 + x)})) for x in table.points]
+            twists = [self.six(self.vector(self.told[node] or (), {"t": half * (2 * k + 1 + x)})) for x in table.points]
             step = half * np.stack(twists, axis=1)
             inside, nodes = collocate(table, R, step[3:])
             r = r + sum(w * (Rq @ v) for w, Rq, v in zip(table.weights, inside, step[:3].T, strict=True))
@@ -498,12 +503,20 @@ class Rod:
             load[:, node] = np.concatenate([turn @ force, turn @ torque])
         return load, self.gather(wrenches) / self.mass, self.gather(media) / self.mass
 
-    def homing(self, node: int, R: Array, r: Array) -> Array:
+    def homing(self, t: Any, node: int, R: Array, r: Array) -> Array:
         """The twist by which an end that is held far from where poses are marched from goes back to its place, by as
         much as it strayed: a correction, no motion through the medium."""
         end, out = dict(self.ends)[node], zeros(6)
+        if node == self.base_node:
+            return out
         side = "left" if node == 0 else "right"
-        if node != self.base_node and f"{side}_pull" in self.given:
+        if end.kind == "driven":
+            turn, way = self.course(node, t)
+            home, place = self.start[0][node] @ turn, self.start[1][node] + self.start[0][node] @ way
+            out[:3] = self.given[f"{side}_pull"] * (R.T @ (place - r))
+            turns = sum(cross(R[:, i], home[:, i]) for i in range(3)) / 2
+            out[3:] = self.given[f"{side}_pull"] * (R.T @ turns)
+        elif f"{side}_pull" in self.given:
             home = {name.removeprefix(f"{side}_home_"): x for name, x in self.given.items()}
             pull = self.given[f"{side}_pull"]
             place = self.three(np.array([home[axis] for axis in "xyz"[: self.space]], dtype=object))
@@ -550,9 +563,10 @@ class Rod:
             fixed = [c for c in self.kept if c not in moving]
             if fixed:  # what stands still is dragged along all the same
                 slip[fixed, n] = -medium[fixed, n]
-                homing[:, n] = self.homing(n, R[n], r[n])
+                homing[:, n] = self.homing(t, n, R[n], r[n])
             if kind == "driven":
-                slip[:, n] += self.six(self.vector(held[n].twist or (), {"t": t}))
+                slip[:, n] += self.six(self.vector(held[n].twist or (), {"t": t})) + homing[:, n]
+                homing[:, n] = 0
             if moving:
                 rest = drive[moving, n] - G[np.ix_(moving, fixed)] @ slip[fixed, n]
                 slip[moving, n] = solve(G[np.ix_(moving, moving)], rest[:, None])[:, 0]

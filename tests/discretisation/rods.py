@@ -121,9 +121,10 @@ def acting(motion: str, *kinds: str) -> list[dict[str, Any]]:
     return [effects(motion)[kind] for kind in kinds]
 
 
-def driven(motion: str) -> dict[str, Any]:
-    """A driven end that does not move along in one direction."""
-    twist = ["0.3*cos(t)", 0, 0.1, "0.5*t", 0.2, "-sin(t)"]
+def driven(motion: str, way: int = 1) -> dict[str, Any]:
+    """A driven end that does not move along in one direction; backwards with -1."""
+    twist: list[Any] = ["0.3*cos(t)", 0, 0.1, "0.5*t", 0.2, "-sin(t)"]
+    twist = twist if way > 0 else ["0.2*sin(t)", "-0.3*cos(t)", 0, 0.4, "cos(t)", "-0.1*t"]
     return {"kind": "driven", "twist": [twist[0], twist[1], twist[5]] if motion == "planar" else twist}
 
 
@@ -237,6 +238,12 @@ def cast(motion: str) -> dict[str, dict[str, Any]]:
             ends={"left": CLAMPED, "right": driven(motion)},
             effects=acting(motion, "flow", "follower"),
         ),
+        "wrung": _rod(
+            motion,
+            {"stiffness": blocks(motion), "friction": full(motion), **curved, "frozen": ["h2"]},
+            ends={"left": driven(motion), "right": driven(motion, -1)},
+            effects=acting(motion, "flow"),
+        ),
         "hoop": _rod(
             motion,
             PLAIN[motion] | closed(motion) | {"stiffness": ["3 + sin(u)", *PLAIN[motion]["stiffness"][1:]]},
@@ -262,14 +269,14 @@ def _bends(motion: str) -> list[str]:
 
 CAST = {f"{motion} {name}": values for motion in MOTIONS for name, values in cast(motion).items()}
 NAMES = tuple(CAST)
-_PLACED = ("held", "stirred", "hinged", "cranked", "reeled", "swept", "ring")
+_PLACED = ("held", "stirred", "hinged", "cranked", "reeled", "swept", "wrung", "ring")
 _SEEING = ("dead", "hung", "everything", "towed", *_PLACED)
 WORLD = (*(name for name in NAMES if name.split()[1] in _SEEING), "spatial twisted")
 """Rods whose loads see the world."""
 PLACED = tuple(name for name in NAMES if name.split()[1] in _PLACED)
 """Those that see where they are in it."""
 JOINED = tuple(name for name in NAMES if name.split()[1] in ("hoop", "ring"))
-FROZEN = tuple(name for name in NAMES if name.split()[1] in ("cranked", "shaken", "reeled", "towed", "ring"))
+FROZEN = tuple(name for name in NAMES if name.split()[1] in ("cranked", "shaken", "reeled", "towed", "wrung", "ring"))
 
 
 def changed(name: str, **tables: Mapping[str, Any]) -> Scene:

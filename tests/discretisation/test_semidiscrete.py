@@ -51,6 +51,8 @@ def test_shapes_are_those_of_the_contract(name: str, size: tuple[int, int]) -> N
     assert r.point.shape == (len(r.structure.at("point")), Q)
     assert r.node.shape == (len(r.structure.at("node")), Q + 1)
     course = r.course.table if r.course is not None and r.structure.sight != "nothing" else np.empty(0)
+    if r.guide is not None:  # of the other end, likewise
+        course = np.concatenate([course, r.guide.table])
     assert r.base.shape == ((3 if d == 3 else 12) + len(course),)
     np.testing.assert_array_equal(r.base[3 if d == 3 else 12 :], course)
     assert (r.course is not None) == ("driven" in (scene(name).model.left.kind, scene(name).model.right.kind))

@@ -244,15 +244,18 @@ SETTLING: dict[str, dict[str, Any]] = {
 @pytest.mark.parametrize("what", [*STIRRED, *SETTLING])
 def test_a_far_held_end_is_drawn_home_only_where_something_may_stir_the_rod_for_ever(what: str) -> None:
     """Whatever settles travels a path of bounded length, on which an end strays no more than the scheme errs anyway;
-    then no pose is marched for it, and no work is done on a passive rod. A driven end stirs, and has no place."""
+    then no pose is marched for it, and no work is done on a passive rod. A driven end stirs; if both are driven, where
+    the far one belongs follows from its twist."""
     stirred = what in STIRRED
-    for left, right in product((driven("spatial"), CLAMPED, PINNED, FREE), (CLAMPED, PINNED)):
+    moving = driven("spatial")
+    for left, right in [*product((moving, CLAMPED, PINNED, FREE), (CLAMPED, PINNED)), (moving, moving)]:
         ends = {"left": left, "right": right}
         values = CAST["spatial plain"] | {"ends": ends} | (STIRRED | SETTLING)[what]
         values["rod"] = CAST["spatial plain"]["rod"] | values["rod"]
         found = structure_of(load_scene(values).model)
         far, side = (found.right, "right") if found.base == "left" else (found.left, "left")
-        homed = far.kind in ("clamped", "pinned") and (stirred or left["kind"] == "driven")
+        homed = far.kind != "free" and (stirred or left["kind"] == "driven")
+        assert found.guided == (far.kind == "driven")
         assert {c.name for c in found.coefficients if c.name.startswith((f"{side}_pull", f"{side}_home"))} == (
             homes(side, far.kind) if homed else set()
         )
@@ -262,6 +265,8 @@ def test_a_far_held_end_is_drawn_home_only_where_something_may_stir_the_rod_for_
 
 def homes(side: str, kind: str) -> set[str]:
     """Names of what says where an end in space belongs."""
+    if kind == "driven":
+        return {f"{side}_pull"}
     frame = tuple(f"{i}{axis}" for i in (1, 2, 3) for axis in "xyz") if kind == "clamped" else ()
     return {f"{side}_pull", *(f"{side}_home_{x}" for x in (*"xyz", *frame))}
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
 from geocosserat.algebra.exponential import rotation_from_vector, vector_from_rotation
 from geocosserat.algebra.groups import SE3
@@ -41,8 +42,23 @@ def _times(sign: float, e: Expression) -> Expression:
     return e if sign > 0 else Negate(e)
 
 
-def reversed_scene(scene: Scene, rod: SemiDiscrete, state: Array) -> Scene:
-    """The scene with u counted from the other end, in the same place of the world when `rod` is in `state`."""
+def _new_start(rod: SemiDiscrete, state: Array, time: float) -> tuple[Array, Array]:
+    """Where the last end must start to be where it is by then: there, if it is not told to move."""
+    now, start = rod.poses(state, time), rod.poses(rod.state)
+    position, turn = now.position[-1], now.rotation[-1]
+    if rod.guide is None:
+        return position, turn
+    there = rod.guide.at(time)
+    if len(there) == 3:
+        gone = plane_rotation(there[2] - np.asarray(start.angle)[-1])
+    else:
+        gone = start.rotation[-1].T @ Rotation.from_quat(there[3:], scalar_first=True).as_matrix()
+    way = start.rotation[-1].T @ (there[: len(position)] - start.position[-1])
+    return position - turn @ gone.T @ way, turn @ gone.T
+
+
+def reversed_scene(scene: Scene, rod: SemiDiscrete, state: Array, time: float = 0.0) -> Scene:
+    """The scene with u counted from the other end, in the same place of the world when `rod` is in `state` by then."""
     model, planar = scene.model, scene.model.group.rotations == 1
     strain, twist = signs(planar)
 
@@ -72,11 +88,11 @@ def reversed_scene(scene: Scene, rod: SemiDiscrete, state: Array) -> Scene:
             new[key] = vector(values, by)
         return replace(e, **new)  # type: ignore[type-var]
 
-    poses = rod.poses(state)
-    if poses.angle is not None:
-        rotation: tuple[float, ...] = (float(poses.angle[-1]) + np.pi,)
+    position, turn = _new_start(rod, state, time)
+    if planar:
+        rotation: tuple[float, ...] = (float(np.arctan2(turn[1, 0], turn[0, 0])) + np.pi,)
     else:
-        rotation = tuple(float(x) for x in vector_from_rotation(poses.rotation[-1] @ about_turn(planar)))
+        rotation = tuple(float(x) for x in vector_from_rotation(turn @ about_turn(planar)))
     there = replace(
         model,
         stiffness=matrix(model.stiffness, strain),
@@ -86,7 +102,7 @@ def reversed_scene(scene: Scene, rod: SemiDiscrete, state: Array) -> Scene:
         right=end(model.left),
         effects=tuple(effect(e) for e in model.effects),
     )
-    start = Start(vector(scene.start.strain, strain), tuple(float(x) for x in poses.position[-1]), rotation)
+    start = Start(vector(scene.start.strain, strain), tuple(float(x) for x in position), rotation)
     return replace(scene, model=there, start=start)
 
 

@@ -139,7 +139,7 @@ def test_unequal_elements_are_no_special_case(motion: str, backend: str) -> None
 
 
 @pytest.mark.parametrize("backend", ["numpy", "c"])
-@pytest.mark.parametrize("name", ["planar towed", "spatial swept"])
+@pytest.mark.parametrize("name", ["planar towed", "spatial swept", "planar wrung", "spatial wrung"])
 def test_a_driven_base_is_seen_at_every_time_of_the_run_and_at_no_other(name: str, backend: str) -> None:
     """In any cell of its course, on its edges and at both ends, as the other language sees it; outside there is no
     rate, rather than a wrong one."""

@@ -84,6 +84,21 @@ def test_a_driven_base_is_where_its_twist_takes_it_whatever_the_tolerance(
 
 @pytest.mark.usefixtures("c_compiler")
 @pytest.mark.parametrize(("elements", "degree"), MESHES)
+@pytest.mark.parametrize("scene", [_shaken(), _rocked()], ids=["spatial", "planar"])
+def test_ends_driven_at_both_sides_go_where_their_twists_take_them(scene: Scene, elements: int, degree: int) -> None:
+    """One is shaken, the other swings in its own way: 200 periods, to the tolerance, places and turns; and the estimate
+    of a run counts what the far one strays."""
+    spatial = scene["rod"]["motion"] == "spatial"
+    twist = [0, 0, "0.1*pi*cos(2*pi*t)", 0, "0.4*pi*cos(2*pi*t)", 0] if spatial else [0, "pi*sin(2*pi*t)/10", 0]
+    far = "right" if spatial else "left"
+    both = changed(scene, {f"ends.{far}": {"kind": "driven", "twist": twist}})
+    solution = simulate(both, elements, degree, 1e-6, backend="c").solution
+    assert gap(solution.position[-1, [0, -1]], solution.position[0, [0, -1]]) < 1e-6
+    assert gap(solution.rotation[-1, [0, -1]], solution.rotation[0, [0, -1]]) < 1e-6
+
+
+@pytest.mark.usefixtures("c_compiler")
+@pytest.mark.parametrize(("elements", "degree"), MESHES)
 @pytest.mark.parametrize("seeing", [False, True], ids=["blind", "heavy"])
 def test_the_strains_of_a_shaken_rod_repeat_however_long_it_is_shaken(
     elements: int, degree: int, seeing: bool
