@@ -1,0 +1,5 @@
+"""Section VI: small motions about an equilibrium."""
+
+from geocosserat.referee.statement import Section
+
+SECTION = Section("Linearisation")
