@@ -96,9 +96,9 @@ def linear_rod() -> tuple[Motion, sp.Symbol, Array]:
 
 
 def coordinate_rod() -> tuple[Jets, Array, Array]:
-    """The same rod with x, y and theta for fields, by (43) alone: these, and their rates. c, s: cosine and sine of theta."""
+    """The same rod with x, y and theta for fields, by (43) alone: these, and their rates; c, s as above."""
     rod = Jets()
-    k, k3, gamma, gamma3 = (rod.constant(name) for name in ("k", "k3", "gamma", "gamma3"))
+    k, k3, gamma, gamma3 = sp.symbols("k k3 gamma gamma3", positive=True)
     x, y, theta = unknowns = rod.fields(["x", "y", "theta"])
     c, s = rod.fields(["c", "s"])
     rod.law(c, u=-s * rod.du(theta), t=-s * rod.dt(theta))
@@ -118,17 +118,13 @@ def position() -> Check:
     return Check(printed=[x, y, 0], derived=SE3.position(displaced), defines=True)
 
 
-@SECTION.states(
-    "I45", "the frame is turned about e3 by theta: e1", r"\boldsymbol{e}_1=(\cos\theta,\sin\theta,0)"
-)
+@SECTION.states("I45", "the frame is turned about e3 by theta: e1", r"\boldsymbol{e}_1=(\cos\theta,\sin\theta,0)")
 def first_axis() -> Check:
     c, s = sp.symbols("c s")  # cosine and sine of theta
     return Check(printed=[c, s, 0], derived=SE3.rotation(turned(SE3))[:, 0], defines=True)
 
 
-@SECTION.states(
-    "I46", "the frame is turned about e3 by theta: e2", r"\boldsymbol{e}_2=(-\sin\theta,\cos\theta,0)"
-)
+@SECTION.states("I46", "the frame is turned about e3 by theta: e2", r"\boldsymbol{e}_2=(-\sin\theta,\cos\theta,0)")
 def second_axis() -> Check:
     c, s = sp.symbols("c s")
     return Check(printed=[-s, c, 0], derived=SE3.rotation(turned(SE3))[:, 1], defines=True)
@@ -283,17 +279,16 @@ def rate_of_theta() -> Check:
 def compatibility() -> Check:
     rod = Motion(SE2)
     phi, E, V = rod.configuration, SE2.hat(rod.turn), SE2.hat(rod.twist)
+    inverse = SE2.inverse(phi)
     return Check(
         printed=rod.du(V) + E @ V - V @ E,
-        derived=rod.dt(E),
-        also=[("the mixed derivatives agree", rod.dt(rod.du(phi)), rod.du(rod.dt(phi)))],
+        derived=inverse @ rod.du(rod.dt(phi)) - inverse @ rod.dt(phi) @ inverse @ rod.du(phi),  # rate of inverse @ phi'
+        also=[("so does the rate of E", rod.dt(E), rod.du(V) + SE2.hat(SE2.bracket(rod.turn, rod.twist)))],
         fields=rod,
     )
 
 
-@SECTION.states(
-    "(71)", "rate of the stretch", r"\dot h_1-v_1'=\Omega h_2-\Pi v_2", part="(71a)"
-)
+@SECTION.states("(71)", "rate of the stretch", r"\dot h_1-v_1'=\Omega h_2-\Pi v_2", part="(71a)")
 def rate_of_h1() -> Check:
     rod = Motion(SE2)
     (h1, h2, Pi), (v1, v2, Omega) = rod.turn, rod.twist
@@ -336,7 +331,9 @@ def stress_components() -> Check:
 
 
 @SECTION.states(
-    "I56", "each mode has its own friction", r"\Gamma=\mathrm{diag}(\gamma_1,\gamma_2,\gamma_3)",
+    "I56",
+    "each mode has its own friction",
+    r"\Gamma=\mathrm{diag}(\gamma_1,\gamma_2,\gamma_3)",
     remark="In the order of the twist: along e1, along e2, and in rotation. What the package puts on the left of the "
     "three balances is this matrix times the twist.",
 )
@@ -365,35 +362,29 @@ def balance() -> Check:
     )
 
 
-@SECTION.states(
-    "(72)", "balance of forces along e1", r"\gamma_1v_1=F_1'-\Pi F_2+f_1", part="(72a)"
-)
+@SECTION.states("(72)", "balance of forces along e1", r"\gamma_1v_1=F_1'-\Pi F_2+f_1", part="(72a)")
 def balance_along() -> Check:
     rod = Motion(SE2)
-    f1, f2, m = load = rod.fields(SE2.wrench)
-    (F1, F2, M), (h1, h2, Pi) = rod.stress, rod.turn
+    f1, _, _ = load = rod.fields(SE2.wrench)
+    (F1, F2, _), (_, _, Pi) = rod.stress, rod.turn
     friction = load - rod.wrench
     return Check(printed=rod.du(F1) - Pi * F2 + f1, derived=friction[0], fields=rod)
 
 
-@SECTION.states(
-    "(72)", "balance of forces along e2", r"\gamma_2v_2=F_2'+\Pi F_1+f_2", part="(72b)"
-)
+@SECTION.states("(72)", "balance of forces along e2", r"\gamma_2v_2=F_2'+\Pi F_1+f_2", part="(72b)")
 def balance_across() -> Check:
     rod = Motion(SE2)
-    f1, f2, m = load = rod.fields(SE2.wrench)
-    (F1, F2, M), (h1, h2, Pi) = rod.stress, rod.turn
+    _, f2, _ = load = rod.fields(SE2.wrench)
+    (F1, F2, _), (_, _, Pi) = rod.stress, rod.turn
     friction = load - rod.wrench
     return Check(printed=rod.du(F2) + Pi * F1 + f2, derived=friction[1], fields=rod)
 
 
-@SECTION.states(
-    "(72)", "balance of moments", r"\gamma_3\Omega=M'+h_1F_2-h_2F_1+m", part="(72c)"
-)
+@SECTION.states("(72)", "balance of moments", r"\gamma_3\Omega=M'+h_1F_2-h_2F_1+m", part="(72c)")
 def balance_of_moments() -> Check:
     rod = Motion(SE2)
-    f1, f2, m = load = rod.fields(SE2.wrench)
-    (F1, F2, M), (h1, h2, Pi) = rod.stress, rod.turn
+    _, _, m = load = rod.fields(SE2.wrench)
+    (F1, F2, M), (h1, h2, _) = rod.stress, rod.turn
     friction = load - rod.wrench
     return Check(printed=rod.du(M) + h1 * F2 - h2 * F1 + m, derived=friction[2], fields=rod)
 
@@ -403,7 +394,7 @@ def balance_of_moments() -> Check:
     "rate of x for any law",
     r"\dot x=\frac1{\gamma_1}(F_1'-\theta'F_2)\cos\theta-\frac1{\gamma_2}(F_2'+\theta'F_1)\sin\theta",
     r"\dot x=\frac1{\gamma_1}(F_1'-\theta'F_2+f_1)\cos\theta-\frac1{\gamma_2}(F_2'+\theta'F_1+f_2)\sin\theta",
-    remark="The load of (72) is left out. (76), (78) and the beams of Section VIII are without load, too.",
+    remark="The load of (72) is left out. (76) and the beams of Section VIII are without load, too.",
     part="(73a)",
 )
 def motion_of_x() -> Check:
@@ -471,9 +462,7 @@ def clamped_end() -> Check:
     )
 
 
-@SECTION.states(
-    "(75)", "at a free end all three components of the stress vanish", r"\Sigma=0\iff F_1=0,\;F_2=0,\;M=0"
-)
+@SECTION.states("(75)", "at a free end all three components of the stress vanish", r"\Sigma=0\iff F_1=0,\;F_2=0,\;M=0")
 def free_end() -> Check:
     rod, theta = planar_rod()
     F1, F2, M = rod.stress
@@ -488,7 +477,9 @@ def free_end() -> Check:
 
 
 @SECTION.states(
-    "I58", "a linear law, uncoupled", r"F_1=k_1(h_1-1),\quad F_2=k_2h_2,\quad M=k_3\Pi",
+    "I58",
+    "a linear law, uncoupled",
+    r"F_1=k_1(h_1-1),\quad F_2=k_2h_2,\quad M=k_3\Pi",
     remark="For the straight reference (1, 0, 0) and a diagonal stiffness.",
 )
 def linear_law() -> Check:
@@ -505,7 +496,9 @@ def linear_law() -> Check:
 
 
 @SECTION.states(
-    "I59", "the same friction along and across", r"\gamma_1=\gamma_2=\gamma",
+    "I59",
+    "the same friction along and across",
+    r"\gamma_1=\gamma_2=\gamma",
     remark="Then friction has no direction: seen in the world it is gamma times the velocity, as (76) has it.",
 )
 def one_friction() -> Check:
@@ -517,16 +510,26 @@ def one_friction() -> Check:
 
 
 @SECTION.states(
-    "I60", "the same stiffness against stretch and shear", r"k_1=k_2=k",
+    "I60",
+    "the same stiffness against stretch and shear",
+    r"k_1=k_2=k",
     remark="Then the force is k (r' - e1), whatever the direction, and (76) has its slope. k must not vary along the "
     "rod.",
 )
 def one_stiffness() -> Check:
-    rod = Motion(SE2)
+    rod, theta = planar_rod()
     k = rod.constant("k")
-    h1, h2, _ = rod.turn
-    force = rod.body(k * (rod.du(rod.position) - rod.frame[0]))
-    return Check(printed=[k, k], derived=[force[0].diff(h1), force[1].diff(h2)], defines=True, fields=rod)
+    (h1, h2, _), (x, y), (c, s) = rod.turn, rod.position, rod.frame[0]
+    force = k * (rod.du(rod.position) - rod.frame[0])
+    F1, F2 = rod.body(force)
+    bracket = [rod.du(rod.du(x)) + rod.du(theta) * s, rod.du(rod.du(y)) - rod.du(theta) * c]
+    return Check(
+        printed=[k, k],
+        derived=[F1.diff(h1), F2.diff(h2)],
+        defines=True,
+        also=[("its slope is what (76) has", rod.du(force), k * np.array(bracket))],
+        fields=rod,
+    )
 
 
 @SECTION.states(
@@ -537,7 +540,7 @@ def one_stiffness() -> Check:
 )
 def linear_motion_of_x() -> Check:
     rod, theta, rates = linear_rod()
-    (x, y), (c, s) = rod.position, rod.frame[0]
+    (x, _), (_, s) = rod.position, rod.frame[0]
     k, gamma = sp.symbols("k gamma")
     return Check(printed=k * (rod.du(rod.du(x)) + rod.du(theta) * s), derived=gamma * rates[0], fields=rod)
 
@@ -550,7 +553,7 @@ def linear_motion_of_x() -> Check:
 )
 def linear_motion_of_y() -> Check:
     rod, theta, rates = linear_rod()
-    (x, y), (c, s) = rod.position, rod.frame[0]
+    (_, y), (c, _) = rod.position, rod.frame[0]
     k, gamma = sp.symbols("k gamma")
     return Check(
         printed=k * (rod.du(rod.du(y)) - rod.du(theta) * c),
@@ -608,9 +611,7 @@ def free_end_stretch() -> Check:
     return Check(printed=rod.du(x) * c + rod.du(y) * s - rest, derived=F1 / k1, fields=rod)
 
 
-@SECTION.states(
-    "(78)", "a free end has its shear at rest", r"-x'\sin\theta+y'\cos\theta=\bar h_2", part="(78b)"
-)
+@SECTION.states("(78)", "a free end has its shear at rest", r"-x'\sin\theta+y'\cos\theta=\bar h_2", part="(78b)")
 def free_end_shear() -> Check:
     rod, _ = planar_rod()
     (x, y), (c, s) = rod.position, rod.frame[0]
@@ -632,26 +633,25 @@ def free_end_bend() -> Check:
     "three equations; coupled, nonlinear and parabolic, each of them",
     r"\text{(76): three coupled nonlinear parabolic equations}",
     remark="Counted: the equations, those that hold another unknown, those that are not linear, and the positive "
-    "coefficients of the second derivatives. These are k/gamma, k/gamma and k3/gamma3, each unknown's own alone: parabolic, for "
-    "positive friction and stiffness.",
+    "coefficients of the second derivatives. These are k/gamma, k/gamma and k3/gamma3, each of the own unknown: "
+    "parabolic, for positive friction and stiffness.",
 )
 def kind_of_equations() -> Check:
     rod, unknowns, rates = coordinate_rod()
-    k, k3, gamma, gamma3, c, s = sp.symbols("k k3 gamma gamma3 c s")
-    first, second = rod.du(unknowns), rod.du(rod.du(unknowns))
+    k, k3, gamma, gamma3 = sp.symbols("k k3 gamma gamma3", positive=True)
+    c, s = sp.symbols("c s")
 
     def depends(e: sp.Expr) -> bool:
         return not compare(e, 0, rod).vanishes
 
-    slopes = [[rate.diff(slope) for slope in first] for rate in rates]
+    slopes = [[rate.diff(slope) for slope in rod.du(unknowns)] for rate in rates]
     coupled = [any(depends(a) for j, a in enumerate(row) if i != j) for i, row in enumerate(slopes)]
-    nonlinear = [any(depends(c * a.diff(s) - s * a.diff(c)) for a in row) for row in slopes]
-    diffusion = [[rate.diff(curve) for curve in second] for rate in rates]
-    positive = {x: sp.Symbol(x.name, positive=True) for x in (k, k3, gamma, gamma3)}
-    own = put(np.diag(np.array([k / gamma, k / gamma, k3 / gamma3])), positive)
+    nonlinear = [any(depends(c * a.diff(s) - s * a.diff(c)) for a in row) for row in slopes]  # a varies with theta
+    second = [[rate.diff(curve) for curve in rod.du(rod.du(unknowns))] for rate in rates]
+    diffusion = [k / gamma, k / gamma, k3 / gamma3]
     return Check(
         printed=[3, 3, 3, 3],
-        derived=[len(rates), sum(coupled), sum(nonlinear), sum(bool(a.is_positive) for a in np.diag(own))],
-        also=[("the matrix of the second derivatives is that of the k/gamma", diffusion, put(own, {v: x for x, v in positive.items()}))],
+        derived=[len(rates), sum(coupled), sum(nonlinear), sum(a.is_positive for a in diffusion)],
+        also=[("each second derivative is that of the own unknown", second, np.diag(diffusion))],
         fields=rod,
     )
