@@ -355,7 +355,11 @@ def _exterior(rod: Jets, a: Sequence[Array]) -> Array:
 
 def _dual_basis() -> list[Callable[[Array], Any]]:
     """b*_alpha as functions of a matrix: projections, as the basis is orthogonal in the trace of the product."""
-    return [lambda X, b=b: np.trace(b.T @ X) / sp.Integer(np.trace(b.T @ b)) for b in SE3.basis]
+
+    def projection(b: Array) -> Callable[[Array], Any]:
+        return lambda X: np.trace(b.T @ X) / sp.Integer(np.trace(b.T @ b))
+
+    return [projection(b) for b in SE3.basis]
 
 
 def _work(rod: Motion, dual: Array, components: Array) -> sp.Expr:
