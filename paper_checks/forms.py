@@ -14,7 +14,7 @@ from geocosserat.algebra.groups import SE3, Array
 from geocosserat.referee.jets import Jets
 from geocosserat.referee.motion import Motion, dot
 from geocosserat.referee.statement import Check, Section
-from paper_checks.lie_groups import change, rigid_motion
+from paper_checks.lie_groups import change
 
 SECTION = Section("Geometric field theory: differential forms")
 
@@ -328,7 +328,7 @@ def laws_are_indifferent() -> Check:
     rod = Motion()
     phi, R, w, s = rod.configuration, rod.rotation, rod.constants("w", 3), rod.constants("s", 3)
     K, Gamma = rod.constants("K", 6), rod.constants("Gamma", 6)
-    moved = rigid_motion(rod) @ phi
+    moved = rod.rigid_motion() @ phi
     E, V = (SE3.vee(SE3.inverse(moved) @ x) for x in (rod.du(moved), rod.dt(moved)))
     return Check(
         printed=[_law(K, R, s, rod.turn), _law(-Gamma, R, w, rod.twist)],

@@ -7,7 +7,7 @@ import sympy as sp
 
 from geocosserat.algebra.groups import SE2, SE3, Array
 from geocosserat.referee.jets import Jets
-from geocosserat.referee.motion import Motion, cross, dot, epsilon, hat
+from geocosserat.referee.motion import Motion, cross, dot, epsilon, hat, rotation_of
 from geocosserat.referee.statement import Check, Section
 
 SECTION = Section("Geometric field theory: Lie groups")
@@ -65,7 +65,8 @@ def twist_of_the_configuration() -> Check:
 @SECTION.states("I08", "turn and twist are infinitesimal rigid motions", r"E,V\in\mathfrak{se}(3)")
 def turn_and_twist_are_in_the_algebra() -> Check:
     path = Jets()
-    phi = SE3.pose(path.array("r", 3), rotation_of(path.array("q", 4)))
+    q = path.array("q", 4)
+    phi = SE3.pose(path.array("r", 3), rotation_of(q) / dot(q, q))
     E, V = SE3.inverse(phi) @ path.du(phi), SE3.inverse(phi) @ path.dt(phi)
     return Check(
         printed=[-E[1:, 1:].T, -V[1:, 1:].T],
@@ -142,7 +143,7 @@ def hat_of_a_triple() -> Check:
 def turn_and_twist_are_invariant() -> Check:
     rod = Motion()
     E, V, a = rod.turn, rod.twist, np.array([*rod.constants("c", 3), 0, 0, 0])
-    moved = rigid_motion(rod) @ rod.configuration
+    moved = rod.rigid_motion() @ rod.configuration
     shifted = rod.configuration @ SE3.pose(a[:3], np.eye(3, dtype=object))
     on_the_right = SE3.vee(SE3.inverse(shifted) @ rod.du(shifted))
     return Check(
@@ -355,21 +356,6 @@ def change(rod: Motion, components: Array) -> Array:
     """What phi changes by if r' = a and e_i' = b x e_i, as (1) and (2) have it: a, b of these components."""
     a, b = (rod.world(x) for x in rod.split(components))
     return np.column_stack([[0, *a], *([0, *cross(b, e)] for e in rod.frame)])
-
-
-def rigid_motion(rod: Motion) -> Array:
-    """A constant element of SE(3), any."""
-    G = rod.constants("G", 3, 3)
-    p = np.array(sp.symbols("p0:4"))
-    rod.bound(dict(zip(G.ravel(), (dot(p, p) * rotation_of(p)).ravel(), strict=True)), [dot(p, p) - 1])
-    return np.asarray(SE3.pose(rod.constants("a", 3), G))
-
-
-def rotation_of(q: Array) -> Array:
-    """The rotation of a quaternion of any length."""
-    a, v = q[0], q[1:]
-    unnormed = (a * a - dot(v, v)) * np.eye(3, dtype=int).astype(object) + 2 * np.outer(v, v) + 2 * a * hat(v)
-    return np.asarray(unnormed / dot(q, q))
 
 
 def _two_elements() -> tuple[Array, Array]:

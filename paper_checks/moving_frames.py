@@ -1,10 +1,9 @@
 """Section III: the same in components of the moving frame."""
 
 import numpy as np
-import sympy as sp
 
 from geocosserat.algebra.groups import SE2, SE3, Array
-from geocosserat.referee.motion import Motion, cross, dot, epsilon, hat
+from geocosserat.referee.motion import Motion, cross, dot, epsilon
 from geocosserat.referee.statement import Check, Section, compare
 
 SECTION = Section("Moving frames")
@@ -257,7 +256,7 @@ def components_of_angular_velocity() -> Check:
 def moved_centreline() -> Check:
     rod = Motion()
     (h, _), (v, _), r = rod.split(rod.turn), rod.split(rod.twist), rod.position
-    R, a, b = _rotation(rod), rod.constants("a", 3), rod.array("b", 3)
+    R, a, b = SE3.rotation(rod.rigid_motion()), rod.constants("a", 3), rod.array("b", 3)
     rod.law(b, u=np.zeros(3, dtype=int))
     moved = (R @ rod.rotation).T
     gained = moved @ rod.dt(b)
@@ -281,7 +280,7 @@ def moved_centreline() -> Check:
 def moved_frame() -> Check:
     rod = Motion()
     (_, Pi), (_, Omega), e = rod.split(rod.turn), rod.split(rod.twist), rod.rotation.T
-    R = _rotation(rod)
+    R = SE3.rotation(rod.rigid_motion())
     return Check(
         printed=[_turning(e @ R.T, rod.du(e @ R.T)), _turning(e @ R.T, rod.dt(e @ R.T))],
         derived=[Pi, Omega],
@@ -298,7 +297,7 @@ def moved_frame() -> Check:
 def metric() -> Check:
     rod = Motion()
     h1, h2, h3 = rod.split(rod.turn)[0]
-    R, a = _rotation(rod), rod.constants("a", 3)
+    R, a = SE3.rotation(rod.rigid_motion()), rod.constants("a", 3)
     slope, moved = rod.du(rod.position), rod.du(R @ rod.position + a)
     return Check(
         printed=h1**2 + h2**2 + h3**2,
@@ -434,16 +433,6 @@ def _resultants(rod: Motion) -> tuple[Array, Array]:
     """Force through a cross-section, and moment about the origin: the stress as a fixed observer there sees it, who
     finds the same power."""
     return rod.split(SE3.Ad(SE3.inverse(rod.configuration)).T @ rod.stress)
-
-
-def _rotation(rod: Motion) -> Array:
-    """The same for all u and t."""
-    a, b, c, d = quaternion = sp.symbols("p0:4")
-    v = np.array([b, c, d], dtype=object)
-    R = rod.constants("Q", 3, 3)
-    values = np.eye(3, dtype=int).astype(object) * (a * a - v @ v) + 2 * np.outer(v, v) + 2 * a * hat(v)
-    rod.bound(dict(zip(R.ravel(), values.ravel(), strict=True)), [sum(x**2 for x in quaternion) - 1])
-    return R
 
 
 def _turning(e: Array, change: Array) -> Array:

@@ -13,7 +13,7 @@ import sympy as sp
 from geocosserat.algebra.groups import SE3, Array
 from geocosserat.referee.motion import Motion, cross, dot, epsilon
 from geocosserat.referee.statement import Check, Section
-from paper_checks.lie_groups import RIGHT_HAT, change, rigid_motion, signed_hat
+from paper_checks.lie_groups import RIGHT_HAT, change, signed_hat
 
 SECTION = Section("Table I")
 
@@ -456,7 +456,7 @@ def law_of_components() -> Check:
     rod = Motion()
     h, Pi = rod.split(rod.turn)
     K, L, H, P = (rod.constants(name, 3) for name in "KLHP")
-    turned = SE3.rotation(rigid_motion(rod))
+    turned = SE3.rotation(rod.rigid_motion())
     e = turned @ rod.rotation
     return Check(
         printed=[_linear(K, H, h), _linear(L, P, Pi)],

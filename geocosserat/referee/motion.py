@@ -37,17 +37,20 @@ class Motion(Jets):
         group = self.group
         position = self.array("r", group.space)
         rotation = self.array("R", group.space, group.space)
-        if group.space == 3:
-            a, b, c, d = quaternion = sp.symbols("q0:4")
-            v = np.array([b, c, d], dtype=object)
-            hat = np.array([[0, -d, c], [d, 0, -b], [-c, b, 0]], dtype=object)
-            values = np.eye(3, dtype=int).astype(object) * (a * a - v @ v) + 2 * np.outer(v, v) + 2 * a * hat
-        else:
-            quaternion = sp.symbols("q0:2")
-            c, s = quaternion
-            values = np.array([[c, -s], [s, c]], dtype=object)
-        self.bound(dict(zip(rotation.ravel(), values.ravel(), strict=True)), [sum(x**2 for x in quaternion) - 1])
+        self._turns(rotation, "q")
         return np.asarray(group.pose(position, rotation))
+
+    def rigid_motion(self) -> Array:
+        """(size, size) a constant element of the group, any: how the world may be moved."""
+        rotation = self.constants("G", self.group.space, self.group.space)
+        self._turns(rotation, "p")
+        return np.asarray(self.group.pose(self.constants("g", self.group.space), rotation))
+
+    def _turns(self, matrix: Array, name: str) -> None:
+        """Constrains a matrix of fields to rotations: those of unit quaternions, or of cosine and sine."""
+        q = np.array(sp.symbols(f"{name}0:{4 if len(matrix) == 3 else 2}"), dtype=object)
+        values = rotation_of(q) if len(q) == 4 else np.array([[q[0], -q[1]], [q[1], q[0]]], dtype=object)
+        self.bound(dict(zip(matrix.ravel(), values.ravel(), strict=True)), [dot(q, q) - 1])
 
     def _compatible(self) -> Array:
         """dE/dt from d(phi E)/dt = d(phi V)/du: of matrices, phi cancels and dE/dt = V' + E V - V E is left."""
@@ -99,6 +102,12 @@ class Motion(Jets):
         f = -self.du(n)
         couple = -self.du(m + cross(self.position, n)) - cross(self.position, f)
         return np.concatenate([self.body(f), self.body(couple) if turned else couple])
+
+
+def rotation_of(q: Any) -> Array:
+    """(3, 3) the rotation of a quaternion, real part first, times its squared length."""
+    a, v = q[0], np.asarray(q[1:], dtype=object)
+    return np.asarray(np.eye(3, dtype=int).astype(object) * (a * a - v @ v) + 2 * np.outer(v, v) + 2 * a * hat(v))
 
 
 def cross(a: Any, b: Any) -> Array:
