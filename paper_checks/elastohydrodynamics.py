@@ -17,7 +17,7 @@ from geocosserat.model.effects.couple import Couple
 from geocosserat.model.effects.follower import Follower
 from geocosserat.model.expressions import Expression, parse
 from geocosserat.model.records import RodModel
-from geocosserat.referee.motion import Motion, cross, dot
+from geocosserat.referee.motion import Motion, cross
 from geocosserat.referee.statement import Check, Section
 
 SECTION = Section("Elastohydrodynamics")
@@ -93,8 +93,8 @@ def wrench_with_friction() -> Check:
     "P06",
     "friction is a symmetric, positive definite matrix that a rigid motion of the whole does not change",
     r"\underline{\underline{\Gamma}}=\underline{\underline{\Gamma}}^{T}>0",
-    remark="An assumption. Symmetry is Onsager's relation: only the symmetric part takes power. Positive definite, it has "
-    "an inverse, without which (42) gives no twist.",
+    remark="An assumption. Symmetry is Onsager's relation: only the symmetric part takes power. Positive definite, it "
+    "has an inverse, without which (42) gives no twist.",
 )
 def friction_is_symmetric() -> Check:
     rod = DerivedRod()
