@@ -93,7 +93,8 @@ class Jets:
                 out[index] = self._total(e[index], along)
             return out
         e = sp.sympify(e, strict=True)
-        return sp.Add(*(e.diff(x) * self._derivative(x, along) for x in sorted(e.free_symbols, key=str)))
+        derivatives = {x: self._derivative(x, along) for x in sorted(e.free_symbols, key=str)}
+        return sp.Add(*(e.diff(x) * derivative for x, derivative in derivatives.items() if derivative != 0))
 
     def _derivative(self, x: sp.Symbol, along: str) -> sp.Expr:
         if x not in self._jets:  # no field: a small parameter, say
