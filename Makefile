@@ -2,7 +2,7 @@
 # Any POSIX make, Python 3.11 or newer, Linux or macOS. Installing compiles nothing; a C compiler makes runs faster.
 .POSIX:
 .SUFFIXES:
-.PHONY: help demo test bench generated clean
+.PHONY: help demo test bench generated errata clean
 
 PYTHON = python3
 OUT = out
@@ -15,6 +15,7 @@ help:
 	@echo "make test       lint, types and all tests; make test TESTS='-m \"not slow\"' hands words on to pytest"
 	@echo "make bench      time and accuracy, measured"
 	@echo "make generated  write the kernels in generated/ again"
+	@echo "make errata     judge the paper and write docs/errata.md again"
 	@echo "make clean      remove .venv, $(OUT) and all caches"
 	@echo "another Python: make PYTHON=python3.12 ..."
 
@@ -31,6 +32,9 @@ bench: .venv/tools
 
 generated: .venv/locked
 	$(BIN)/python -m geocosserat.codegen.catalogue
+
+errata: .venv/locked
+	$(BIN)/python -m paper_checks
 
 clean:
 	rm -rf .venv $(OUT) build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis

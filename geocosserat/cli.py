@@ -1,4 +1,4 @@
-"""The command line: `geocosserat COMMAND SCENE`.
+"""The command line: `geocosserat COMMAND SCENE`, and `geocosserat paper`.
 
 Exit codes: 0 done; 1 the answer is no; 2 the input is wrong (one message); 3 undecided or not reached.
 """
@@ -16,15 +16,19 @@ from rich.console import Console
 
 from geocosserat.conductor import derive as derive_equations
 from geocosserat.conductor import generate as generate_kernels
+from geocosserat.conductor import paper as review_paper
 from geocosserat.conductor import run as run_scene
 from geocosserat.kernel.compile import CompileError
 from geocosserat.model.errors import InputError
+from geocosserat.results.atomic import write_bytes
 from geocosserat.results.checkpoint import NAME as CHECKPOINT
 from geocosserat.results.errors import FileError
+from geocosserat.results.progress import progress
 from geocosserat.results.summary import print_summary
 from geocosserat.version import VERSION
 
-WRONG_INPUT, NOT_REACHED = 2, 3
+NO, WRONG_INPUT, NOT_REACHED = 1, 2, 3
+MOST_PROCESSES = 4
 
 SETTINGS = click.option(
     "--set", "settings", metavar="KEY=VALUE", multiple=True, help="Change any key, e.g. rod.length=2."
@@ -132,3 +136,53 @@ def generate(scene: str, backend: str, out: str, settings: tuple[str, ...], over
         click.echo(path)
     how = f"make -C {out} && {out}/driver" if backend == "c" else f"python {out}/driver.py"
     click.echo(f"try it: {how}")
+
+
+@main.command()
+@click.option("--html", metavar="FILE", type=click.Path(), help="Write a page with all formulas and the code, too.")
+@click.option("--overwrite", is_flag=True, help="Replace FILE if it is there.")
+@JSON
+@_one_message
+def paper(html: str | None, overwrite: bool, as_json: bool) -> None:
+    """Check every statement of the paper: verdict by verdict."""
+    target = None if html is None else _claim_file(Path(html), "--html", overwrite)
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    try:
+        with progress("judging", unit="statements") as bar:
+            report = review_paper(lambda done, total: bar(done / total, done), min(cores, MOST_PROCESSES))
+    except KeyboardInterrupt:
+        click.echo("geocosserat: interrupted", err=True)
+        sys.exit(NOT_REACHED)
+    files = []
+    if target is not None:
+        from geocosserat.referee.page import page
+        from paper_checks.title import AUTHORS, TITLE
+
+        files = [str(write_bytes(target, page(report, TITLE, AUTHORS).encode()))]
+    if as_json:
+        _print_json({**report.fields, "files": files})
+    else:
+        from geocosserat.referee.show import print_report
+
+        print_report(report, Console())
+        for file in files:
+            click.echo(f"wrote {file}")
+    if not report.passed:
+        sys.exit(NO)
+
+
+def _claim_file(path: Path, key: str, overwrite: bool) -> Path:
+    """Makes sure, before anything is computed, that the file can be written and that none is lost."""
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        there, folder, writable = path.exists(), path.is_dir(), os.access(path.parent, os.W_OK | os.X_OK)
+    except OSError as error:
+        found = f"{path}: {error.strerror or error}"
+        raise InputError("a file to write", found, f"choose another {key}", key=key) from error
+    if folder:
+        raise InputError("a file to write", f"{path}, a folder", "name a file in it", key=key)
+    if not writable:
+        raise InputError("a folder that can be written", f"{path.parent}, read-only", f"choose another {key}", key=key)
+    if there and not overwrite:
+        raise InputError("no such file yet", str(path), f"choose another {key}, or say --overwrite", key=key)
+    return path

@@ -14,7 +14,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from geocosserat.accuracy import Setting
 from geocosserat.codegen.identity import identity
@@ -34,6 +34,9 @@ from geocosserat.results.solution import Solution
 from geocosserat.results.summary import summary, write_summary
 from geocosserat.simulation import Attempt, Clock, Simulation, chosen_setting, solution_of
 from geocosserat.version import VERSION
+
+if TYPE_CHECKING:
+    from geocosserat.referee.report import Report
 
 SceneLike = str | os.PathLike[str] | Mapping[str, Any] | Scene
 SOLUTION, PICTURE, SUMMARY = "solution.nc", "picture.png", "summary.json"
@@ -283,6 +286,18 @@ def generate(
     for name, content in files.items():
         write_bytes(folder / name, content.encode())
     return Generated(backend, tuple(folder / name for name in files), json.loads(files["signature.json"]))
+
+
+def paper(progress: Callable[[int, int], None] | None = None, processes: int = 1) -> "Report":
+    """Judges every statement of the paper this program was made from; each verdict is computed.
+
+    `progress` is called with how many statements were judged so far, and how many there are; `processes` work side by
+    side.
+    """
+    from geocosserat.referee.report import review
+    from paper_checks import SECTIONS
+
+    return review(SECTIONS, progress, processes)
 
 
 def _write(solution: Solution, files: Sequence[Path], fields: Mapping[str, Any]) -> None:

@@ -352,7 +352,7 @@ def commutation_relations() -> Check:
 @SECTION.states(
     "P13",
     "they translate along and turn about the vectors of the moving frame",
-    r"X_{1,2,3}:\ \delta\boldsymbol{r}=\boldsymbol{e}_\alpha;\quad"
+    r"X_{1,2,3}:\ \delta\boldsymbol{r}=\boldsymbol{e}_\alpha;\quad "
     r"X_{4,5,6}:\ \delta\boldsymbol{e}_i=\boldsymbol{e}_{\alpha-3}\times\boldsymbol{e}_i",
 )
 def generators() -> Check:

@@ -17,6 +17,7 @@ import geocosserat
 from geocosserat.cli import main
 from tests.model.refusals import REFUSALS, SPATIAL_REFUSALS
 from tests.model.scenes import PLANAR, SPATIAL, changed
+from tests.referee import paper
 
 ROOT = Path(__file__).parents[1]
 QUICK = ("--set", "run.elements=1", "--set", "run.degree=4", "--set", "run.frames=3", "--set", "run.backend=numpy")
@@ -364,3 +365,118 @@ def test_resuming_nothing_is_refused_in_one_line(cantilever: str, tmp_path: Path
     line = refused(program("run", cantilever, *QUICK, "--resume", "--out", str(tmp_path / "none")))
     assert "expected a checkpoint to go on from, found none" in line
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.fixture
+def short_paper(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Four statements in place of all."""
+    monkeypatch.setattr("paper_checks.SECTIONS", paper.SECTIONS)
+
+
+def test_the_paper_is_judged_statement_by_statement(short_paper: None) -> None:
+    """A line for each, how many have which verdict, and what is right in place of what is not."""
+    done = call("paper")
+    assert (done.exit_code, done.stderr) == (0, "")
+    lines = done.stdout.splitlines()
+    assert ["(1a)", "definition", "the", "slope"] in [line.split() for line in lines]
+    assert ["all", "1", "1", "1", "1", "0"] in [line.split() for line in lines]
+    assert "corrected  \\dot\\Pi-\\Omega'=\\Pi\\times\\Omega" in lines
+
+
+def test_verdicts_as_json_have_the_agreed_fields(short_paper: None) -> None:
+    """One object and nothing else; a part only where there is one."""
+    done = call("paper", "--json")
+    assert (done.exit_code, done.stderr, done.stdout.count("\n")) == (0, "", 1)
+    fields = json.loads(done.stdout)
+    assert set(fields) == {"statements", "summary", "seconds", "files"}
+    assert all(set(s) >= {"id", "verdict", "printed", "derived", "remark", "how"} for s in fields["statements"])
+    assert [s.get("part") for s in fields["statements"]] == ["(1a)", "(1b)", None, None]
+    assert [s["verdict"] for s in fields["statements"]] == ["definition", "misprint", "holds", "conditional"]
+    assert fields["files"] == []
+
+
+def test_a_statement_that_fails_ends_with_one(short_paper: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With all that is said otherwise, and why."""
+    monkeypatch.setattr("paper_checks.SECTIONS", (*paper.SECTIONS, paper.failing()))
+    done = call("paper")
+    assert (done.exit_code, done.stderr) == (1, "")
+    assert "decided    the printed form does not follow, and no other is given: refuted" in done.stdout
+    done = call("paper", "--json")
+    assert done.exit_code == 1
+    assert json.loads(done.stdout)["statements"][-1]["verdict"] == "fails"
+
+
+def test_the_page_is_written_once_unless_it_may_be_replaced(short_paper: None, tmp_path: Path) -> None:
+    """Into a folder that is made for it; with --json, the file is named there."""
+    file = tmp_path / "new" / "paper.html"
+    done = call("paper", "--html", str(file))
+    assert done.exit_code == 0
+    assert done.stdout.splitlines()[-1] == f"wrote {file}"
+    assert [f.name for f in file.parent.iterdir()] == ["paper.html"]
+    page = file.read_bytes()
+    assert b"Geometric Field Theory for Elastohydrodynamics of Cosserat Rods" in page
+    file.write_text("mine")
+    line = refused(call("paper", "--html", str(file)))
+    assert line == f"--html: expected no such file yet, found {file}; choose another --html, or say --overwrite"
+    assert file.read_text() == "mine"
+    fields = json.loads(call("paper", "--html", str(file), "--overwrite", "--json").stdout)
+    assert fields["files"] == [str(file)]
+    assert file.read_bytes() == page
+
+
+def test_a_page_that_cannot_be_written_is_refused_before_anything_is_judged(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A folder in its place, a path through a file, a file system that takes nothing."""
+
+    def judged(*_: Any) -> None:
+        raise AssertionError("expected a refusal first")
+
+    monkeypatch.setattr("geocosserat.cli.review_paper", judged)
+    file = tmp_path / "file"
+    file.write_text("mine")
+    assert refused(call("paper", "--html", str(tmp_path))).startswith(
+        f"--html: expected a file to write, found {tmp_path}, a folder; name a file in it"
+    )
+    for target in (file / "paper.html", Path("/proc/none/paper.html"), tmp_path / ("x" * 300)):
+        line = refused(call("paper", "--html", str(target)))
+        assert line.startswith("--html: expected a file to write, found ")
+        assert str(target) in line
+    assert [f.name for f in tmp_path.iterdir()] == ["file"]
+
+
+def test_a_disk_that_is_full_leaves_no_part_of_a_page(
+    short_paper: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """One message."""
+
+    def full(*_: Any) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("os.fsync", full)
+    assert "No space left on device" in refused(call("paper", "--html", str(tmp_path / "paper.html")))
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_judging_may_be_interrupted(monkeypatch: pytest.MonkeyPatch) -> None:
+    """One line, no traceback."""
+
+    def stop(*_: Any) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("geocosserat.cli.review_paper", stop)
+    done = call("paper")
+    assert (done.exit_code, done.stdout, done.stderr) == (3, "", "geocosserat: interrupted\n")
+
+
+@pytest.mark.slow
+def test_the_whole_paper_is_judged_and_shown(tmp_path: Path) -> None:
+    """In a process of its own: no statement fails, each is on the page, in the order of the paper's own list."""
+    file = tmp_path / "paper.html"
+    done = program("paper", "--json", "--html", str(file))
+    assert (done.returncode, done.stderr) == (0, "")
+    fields = json.loads(done.stdout)
+    counts = fields["summary"]["total"]
+    assert counts["fails"] == 0
+    assert sum(counts.values()) == len(fields["statements"])
+    assert file.read_text().count("<article") == len(fields["statements"])

@@ -14,10 +14,11 @@ from geocosserat.version import VERSION
 
 @lru_cache(maxsize=1)
 def templates_hash() -> str:
-    """Hash of the names and contents of all templates."""
+    """Hash of the names and contents of all templates of kernels; pages for people are none."""
     digest = hashlib.sha256()
     for path in sorted(shipped("templates").glob("*.j2")):
-        digest.update(path.name.encode() + b"\0" + path.read_bytes())
+        if not path.name.endswith(".html.j2"):
+            digest.update(path.name.encode() + b"\0" + path.read_bytes())
     return digest.hexdigest()
 
 

@@ -28,11 +28,14 @@ _PAUSE = 0.1  # seconds between two drawings
 def progress(
     label: str = "",
     *,
+    unit: str = "steps",
     stream: TextIO | None = None,
     delay: float = 1.0,
     clock: Callable[[], float] = time.monotonic,
 ) -> Iterator[Report]:
     """Give a `Report` that draws a bar on `stream` (default: standard error) and takes it away at the end.
+
+    `unit` is what the second number of a report counts.
 
     Nothing is ever written unless the stream is a terminal and `delay` seconds have passed. There is no
     thread: the bar moves when the report is called, and a call between two drawings costs one look at the
@@ -46,7 +49,7 @@ def progress(
     if not console.is_terminal or console.is_dumb_terminal:
         yield _silent
         return
-    bar = _Bar(console, label, delay, clock)
+    bar = _Bar(console, label, delay, clock, unit)
     try:
         yield bar
     finally:
@@ -60,8 +63,8 @@ def _silent(fraction: float, steps: int) -> None:
 class _Bar:
     """A rich progress bar that starts late and is drawn at most ten times a second."""
 
-    def __init__(self, console: Console, label: str, delay: float, clock: Callable[[], float]) -> None:
-        self._console, self._label, self._clock = console, label, clock
+    def __init__(self, console: Console, label: str, delay: float, clock: Callable[[], float], unit: str) -> None:
+        self._console, self._label, self._clock, self._unit = console, label, clock, unit
         self._started = clock()
         self._next = self._started + delay
         self._shown: Progress | None = None
@@ -79,7 +82,7 @@ class _Bar:
     def _open(self) -> Progress:
         shown = Progress(
             TextColumn("{task.description}", markup=False),
-            BarColumn(), TaskProgressColumn(), TextColumn("{task.fields[steps]} steps"),
+            BarColumn(), TaskProgressColumn(), TextColumn(f"{{task.fields[steps]}} {self._unit}"),
             TimeElapsedColumn(), TimeRemainingColumn(),
             console=self._console, transient=True, auto_refresh=False, get_time=self._clock,
             redirect_stdout=False, redirect_stderr=False,

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import product
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from geocosserat.codegen.identity import identity
+from geocosserat.codegen.identity import identity, templates_hash
 from geocosserat.discretisation.structure import RodStructure
 from geocosserat.discretisation.structuring import structure_of
 from geocosserat.model.expressions import Number, symbols
@@ -177,6 +178,23 @@ def test_identity_depends_on_templates_and_version(monkeypatch: pytest.MonkeyPat
     other_version = identity(plain)
     monkeypatch.setattr("geocosserat.codegen.identity.templates_hash", lambda: "0")
     assert len({before, other_version, identity(plain)}) == 3
+
+
+def test_a_page_for_people_is_no_kernel(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """What it looks like renames no kernel; the template of a kernel does."""
+
+    def found() -> str:
+        templates_hash.cache_clear()
+        return templates_hash()
+
+    monkeypatch.setattr("geocosserat.codegen.identity.shipped", lambda _: tmp_path)
+    before = found()
+    (tmp_path / "page.html.j2").write_text("a page")
+    with_page = found()
+    (tmp_path / "rod.c.j2").write_text("a kernel")
+    with_kernel = found()
+    templates_hash.cache_clear()
+    assert before == with_page != with_kernel
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -24,6 +24,7 @@ STAGES = {
     "solver": ("kernel.contract", "kernel.compile"),  # integrates anything that keeps the contract; knows no rods
     "results": ("algebra.groups", "model.errors", "kernel.contract", "solver.trajectory"),
     "accuracy": ("discretisation.mesh", "model"),  # the conductor's plan
+    "referee": ("algebra",),  # judges statements about rods; knows no paper
 }
 BASE = ("version", "shipped")  # free to all; import nothing of the package
 SEE_ALL = ("", "__main__", "cli", "conductor", "simulation")  # "" is geocosserat/__init__.py
@@ -35,15 +36,18 @@ LIBRARIES = {
     "click": ("cli",),
     "h5netcdf": ("results",),
     "h5py": ("results",),
-    "jinja2": ("codegen",),
+    "jinja2": ("codegen", "referee.page"),
+    "latex2mathml": ("referee.mathml",),
+    "markupsafe": ("referee.page",),
     "matplotlib": ("results",),
     "mpl_toolkits": ("results",),
-    "mpmath": ("algebra.symbolic", "derivation"),
+    "mpmath": ("algebra.symbolic", "derivation", "referee.decide"),
     "numpy": EVERYWHERE,
-    "rich": ("results", "conductor", "cli"),
+    "paper_checks": ("conductor", "cli"),  # no library, but what is checked: nothing else may depend on it
+    "rich": ("results", "conductor", "cli", "referee.show"),
     "scipy": EVERYWHERE,
     "sksundae": ("solver",),
-    "sympy": ("algebra.symbolic", "algebra.fields", "derivation", "discretisation.pointwise", "codegen"),
+    "sympy": ("algebra.symbolic", "algebra.fields", "derivation", "discretisation.pointwise", "codegen", "referee"),
     "xarray": ("results",),
 }
 DISTRIBUTION = {"mpl_toolkits": "matplotlib", "sksundae": "scikit-sundae"}
@@ -53,7 +57,9 @@ LATE = {
     "cli": EVERYWHERE,
     "results": ("matplotlib", "mpl_toolkits", "xarray"),
 }
-SLOW_TO_IMPORT = ("jinja2", "matplotlib", "pandas", "sympy", "xarray")
+PAPER = ("algebra", "model", "derivation", "discretisation", "referee")
+"""What the records of the paper may import of the package: they run nothing and write nothing."""
+SLOW_TO_IMPORT = ("jinja2", "latex2mathml", "matplotlib", "paper_checks", "pandas", "sympy", "xarray")
 RUNS_TEXT = ("__import__", "compile", "eval", "exec", "lambdify", "parse_expr", "sympify")
 
 
@@ -166,7 +172,7 @@ def test_every_imported_library_is_a_declared_dependency() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     declared = project["dependencies"] + project["optional-dependencies"]["xarray"]
     names = {text.split(">")[0] for text in declared}
-    imported = {_top(found.name) for found in _libraries()}
+    imported = {_top(found.name) for found in _libraries()} - {"paper_checks"}  # which comes in the same wheel
     assert {DISTRIBUTION.get(name, name) for name in imported} <= names
 
 
@@ -174,6 +180,18 @@ def test_imports_inside_functions_are_the_conductors() -> None:
     """A hidden import hides a dependency; the conductor may wait for one, results for a heavy library."""
     wrong = [found for found in _imports() if found.late and not _within(found.name, LATE.get(_top(found.module), ()))]
     assert not wrong, _listed(wrong)
+
+
+def test_the_paper_is_judged_by_what_needs_no_run() -> None:
+    """Its records see algebra, models and derivations; no kernel, no solver, no file, and nothing hidden."""
+    allowed = ("numpy", "paper_checks", "sympy", *(f"geocosserat.{stage}" for stage in PAPER))
+    wrong = []
+    for path in sorted((ROOT / "paper_checks").glob("*.py")):
+        for node, late in _statements(ast.parse(path.read_text(), str(path))):
+            names = [a.name for a in node.names] if isinstance(node, ast.Import) else [str(node.module)]
+            outside = [n for n in names if _top(n) not in sys.stdlib_module_names and not _within(n, allowed)]
+            wrong += [f"{path.name}:{node.lineno}: {name}" for name in (names if late else outside)]
+    assert not wrong
 
 
 def test_no_module_imports_itself_through_others() -> None:

@@ -58,7 +58,7 @@ def _files(folder: str, name: str) -> set[str]:
 
 
 def test_the_wheel_holds_the_package_its_templates_and_its_kernels(wheel: Path) -> None:
-    """Every module, every template, every generated kernel; and nothing else than these and the licence."""
+    """Every module, template and generated kernel, what is checked of the paper, the licence; and nothing else."""
     names = {name for name in zipfile.ZipFile(wheel).namelist() if not name.endswith("/")}
     inside = {name for name in names if name.startswith("geocosserat/")}
     templates, kernels = (_files(folder, f"geocosserat/{folder}") for folder in ("templates", "generated"))
@@ -66,7 +66,10 @@ def test_the_wheel_holds_the_package_its_templates_and_its_kernels(wheel: Path) 
     assert kernels
     assert inside == _files("geocosserat", "geocosserat") | templates | kernels
     assert "geocosserat/py.typed" in inside
-    rest = {Path(name).name for name in names - inside}
+    records = _files("paper_checks", "paper_checks")
+    assert "paper_checks/ids.json" in records
+    assert {name for name in names if name.startswith("paper_checks/")} == records
+    rest = {Path(name).name for name in names - inside - records}
     assert rest == {"METADATA", "WHEEL", "RECORD", "entry_points.txt", "LICENSE"}
 
 
@@ -88,6 +91,22 @@ def test_the_installed_program_runs_a_scene_from_anywhere(elsewhere: Path) -> No
     assert all((elsewhere / file).stat().st_size > 0 for file in fields["files"])
     assert fields["backend"] == ("numpy" if compiler() is None else "c")
     assert not list(cache.glob("*.json")), "expected a shipped kernel, found one generated"
+
+
+def test_the_installed_package_judges_the_paper_and_shows_how(elsewhere: Path) -> None:
+    """The first statement is enough: records, their source, the template and the converter of formulas are there."""
+    code = """
+from geocosserat.referee.page import page
+from geocosserat.referee.report import review
+from geocosserat.referee.statement import Section
+from paper_checks import SECTIONS
+first = Section(SECTIONS[0].title)
+first.statements.append(SECTIONS[0].statements[0])
+report = review([first])
+text = page(report, "one statement")
+print(report.passed, "<math" in text, "print(verdict_on(" in text)
+"""
+    assert _run(elsewhere / "venv" / "bin" / "python", "-c", code, cwd=elsewhere).split() == ["True"] * 3
 
 
 def test_the_version_installed_is_the_one_in_the_source(elsewhere: Path) -> None:

@@ -150,3 +150,12 @@ def test_fractions_outside_the_run_are_cut(terminal: Terminal) -> None:
         clock.now += 5.0
         report(1.3, 7)
     assert "100%" in terminal.close()
+
+
+def test_what_is_counted_has_a_name(terminal: Terminal) -> None:
+    """Statements that are judged, say."""
+    clock = Clock()
+    with progress("judging", unit="statements", stream=terminal.stream, clock=clock) as report:
+        clock.now += 5.0
+        report(0.5, 12)
+    assert "12 statements" in terminal.close()
