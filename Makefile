@@ -1,4 +1,4 @@
-# make demo: a rod in motion, from a fresh clone. make test: every check.
+# make demo: a rod in motion, from a fresh clone. make test: checks.
 # Any POSIX make, Python 3.11 or newer, Linux or macOS. Installing compiles nothing; a C compiler makes runs faster.
 .POSIX:
 .SUFFIXES:
@@ -12,7 +12,7 @@ PIP = $(BIN)/python -m pip --disable-pip-version-check install -q
 
 help:
 	@echo "make demo       install into .venv, simulate examples/helix.toml, write numbers and a picture to $(OUT)/demo"
-	@echo "make test       lint, types and all tests; make test TESTS='-m \"not slow\"' hands words on to pytest"
+	@echo "make test       lint, types and tests; make test TESTS='-m slow' runs those that take long"
 	@echo "make bench      time and accuracy, measured"
 	@echo "make generated  write the kernels in generated/ again"
 	@echo "make errata     judge the paper and write docs/errata.md again"

@@ -460,7 +460,9 @@ def linear_rate() -> Check:
     gamma2, k3 = sp.symbols("gamma2 k3")
     N = rod.constant("N")
     _, spin = beam(rod)
-    _, row = small_motion(limit(solved_by_geocosserat(0, ("h1", "h2")))).rows
+    small = small_motion(limit(solved_by_geocosserat(0, ("h1", "h2"))))
+    assert small is not None
+    _, row = small.rows
     return Check(
         printed=-k3 * rod.du(rod.du(rod.du(rod.du(theta)))) / gamma2,
         derived=first_order(rod, spin, tension=N),

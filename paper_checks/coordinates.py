@@ -77,7 +77,8 @@ def put(e: Any, values: dict[Any, Any]) -> Any:
 def overdamped(rod: Motion, theta: sp.Symbol, friction: Array, load: Any = 0) -> Array:
     """(3,) rates of x, y and theta of a rod on whose pieces nothing acts but friction, for each mode, and a load."""
     V = (load - rod.wrench) / friction
-    return put(rod.dt(np.array([*rod.position, theta], dtype=object)), dict(zip(rod.twist, V, strict=True)))
+    rates = rod.dt(np.array([*rod.position, theta], dtype=object))
+    return np.asarray(put(rates, dict(zip(rod.twist, V, strict=True))))
 
 
 def loaded_rod() -> tuple[Motion, sp.Symbol, Array, Array, Array]:

@@ -60,12 +60,17 @@ def decide(
     unknowns = sorted({x for e in entries for x in e.free_symbols}, key=str)
 
     def refuted(numbers: _Numbers, points: int) -> Decision | None:
+        valued = [False] * len(entries)
         for _ in range(points):
             point = _point(unknowns, spheres, chance, numbers)
             for i, e in enumerate(entries):
                 value = _value(e, point, numbers, {})
+                valued[i] |= value is not None
                 if value is not None and not numbers.vanishes(value):
                     return numbers.refutation(point, i, value)
+        if not all(valued):
+            how = f"refuted: entry {valued.index(False) + 1} has a value at none of {points} random points"
+            return Decision(False, how, False, entry=valued.index(False))
         return None
 
     if any(e.has(sp.Function) or _roots(e) for e in entries):
@@ -73,10 +78,14 @@ def decide(
             return refuted(_Real(), 20) or Decision(
                 True, f"probable: vanishes to {DIGITS} digits at 20 random points", False
             )
-    if refuted(_Modular(), POINTS) is None and (proof := _proof(entries, spheres)):
+    unequal = refuted(_Modular(), POINTS)
+    if unequal is None and (proof := _proof(entries, spheres)):
         return proof
-    return refuted(_Numbers(), 20) or Decision(
-        True, f"probable: vanishes at {POINTS} random points modulo 2^61 - 1", False
+    # at numbers that can be read, if it is off there
+    return (
+        refuted(_Numbers(), 20)
+        or unequal
+        or Decision(True, f"probable: vanishes at {POINTS} random points modulo 2^61 - 1", False)
     )
 
 
@@ -111,6 +120,8 @@ class _Numbers:
 
     def refutation(self, point: Mapping[sp.Symbol, Any], entry: int, value: Any) -> Decision:
         def text(x: Any) -> str:
+            if isinstance(x, int):
+                return str(x)
             return str(mpmath.nstr(mpmath.mpf(x.numerator) / x.denominator if isinstance(x, Fraction) else x, 12))
 
         shown = {str(x): str(v) if isinstance(v, Fraction) else text(v) for x, v in point.items()}
@@ -120,6 +131,8 @@ class _Numbers:
 
 class _Modular(_Numbers):
     """Numbers modulo the prime."""
+
+    words = "modulo 2^61 - 1"
 
     def draw(self, chance: random.Random) -> Any:
         return chance.randrange(1, PRIME)

@@ -23,6 +23,7 @@ def arguments(s: KernelSource) -> set[str]:
     return {name for place in ("uniform", "point", "node") for name in s.signature[place]}
 
 
+@pytest.mark.slow
 def test_kernels_consist_of_what_they_did() -> None:
     """No effect and no end has got dearer, in the plane or in space, for a scene with it or without; a change that is
     meant to change these counts writes them anew: python -m tests.codegen.counts"""

@@ -239,6 +239,7 @@ def test_the_c_kernel_includes_the_standard_library_only(name: str) -> None:
     assert set(re.findall(r"#include (.*)", source(name).c)) == {"<math.h>", "<stddef.h>", "<string.h>"}
 
 
+@pytest.mark.slow
 def test_every_kernel_compiles_without_a_warning_at_every_kind_of_degree(tmp_path: Path, c_compiler: str) -> None:
     """C99, -Wall -Wextra -Werror, shipped ones and the whole cast, degrees 1, 2, 8, with the optimiser's warnings."""
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import pytest
 import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -38,6 +39,7 @@ def test_a_tape_has_the_values_of_its_trees(expressions: list[sp.Expr], seed: in
         close(value, evaluate(e, at))
 
 
+@pytest.mark.slow
 @given(several, seeds)
 @settings(max_examples=40, deadline=None)
 def test_the_jacobian_of_a_tape_has_the_derivatives_of_its_trees(expressions: list[sp.Expr], seed: int) -> None:

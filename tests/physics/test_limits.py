@@ -13,6 +13,8 @@ from geocosserat.results.solution import Solution
 from tests.physics.scenes import Array, Scene, changed, gap, simulate, straight
 from tests.references import axial_twist, inextensible_rod, kirchhoff_statics
 
+pytestmark = pytest.mark.slow
+
 DECADES = (1e3, 1e4, 1e5, 1e6)
 
 

@@ -8,6 +8,8 @@ import pytest
 
 from tests.physics.scenes import Scene, changed, gap, simulate, straight
 
+pytestmark = pytest.mark.slow
+
 COEFFICIENTS = ([60.0, 50.0, 40.0, 0.9, 1.2, 1.0], [1.5, 2.0, 1.8, 0.03, 0.02, 0.025])
 PERIODS = 200
 MESHES = [(8, 1), (1, 6)]

@@ -10,6 +10,8 @@ import pytest
 
 from tests.physics.scenes import Array, Scene, changed, simulate, straight
 
+pytestmark = pytest.mark.slow
+
 PLANE = ([60.0, 40.0, 1.0], [1.0, 1.7, 0.05])
 SPACE = ([60.0, 40.0, 30.0, 0.8, 1.2, 1.0], [1.5, 2.0, 1.8, 0.03, 0.05, 0.04])
 
