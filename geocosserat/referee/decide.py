@@ -255,8 +255,9 @@ def _proof(entries: Sequence[sp.Expr], spheres: Sequence[Sequence[sp.Symbol]]) -
     written = [named(e) for e in entries]
     ring, rules = _ring([*written, *reciprocals, *reciprocals.values()], spheres)
     rules += [ring.from_expr(base * one_over - 1) for base, one_over in reciprocals.items()]
-    terms = sum(len(ring.from_expr(part)) for e in written for part in sp.Add.make_args(e))
-    if not any(ring.from_expr(e).rem(rules) for e in written):
+    parts = [[ring.from_expr(part) for part in sp.Add.make_args(e)] for e in written]
+    terms = sum(len(part) for sums in parts for part in sums)
+    if not any(sum(sums, ring.zero).rem(rules) for sums in parts):
         return Decision(True, f"proved: normal form of {_count(entries)}, {terms} terms cancel")
     # reciprocals within reciprocals: over one denominator
     ring, rules = _ring(entries, spheres)

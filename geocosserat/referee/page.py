@@ -20,7 +20,7 @@ from geocosserat.version import VERSION
 MEANING = {
     "holds": "follows as printed",
     "definition": "a definition or an assumption, used as it stands",
-    "conditional": "holds as printed under a condition that is not stated",
+    "conditional": "holds as printed under a condition, and not without",
     "misprint": "does not follow as printed; the form beside it does",
     "fails": "does not follow, and no form is known that does",
 }
