@@ -36,10 +36,10 @@ class Group:
         """Dimension of the group: 3 in the plane, 6 in space."""
         return len(self.basis)
 
-    @property
+    @cached_property
     def translations(self) -> int:
-        """Number of translations: 2 or 3."""
-        return self.space
+        """Number of translations: 2, 3, or none in a group of rotations."""
+        return sum(bool(np.any(element[1:, 0])) for element in self.basis)
 
     @property
     def rotations(self) -> int:

@@ -166,6 +166,15 @@ def test_moving_the_world_changes_no_turn(group: Group) -> None:
     assert not rod.du(g).any()
 
 
+def test_a_group_of_rotations_has_no_linear_part() -> None:
+    """All of turn and twist is angular; vectors are turned by the same frame."""
+    rod = Motion(SO3)
+    none, turn = rod.split(rod.turn)
+    assert len(none) == 0
+    assert turn.tolist() == rod.turn.tolist()
+    assert same(rod.dt(rod.frame[0]), cross(rod.world(rod.twist), rod.frame[0]), rod)
+
+
 def test_products_of_vectors_are_the_usual_ones() -> None:
     """Right-handed; the antisymmetric symbol has the same sign."""
     x, y, z = np.eye(3, dtype=int).astype(object)
