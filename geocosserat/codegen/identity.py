@@ -14,11 +14,10 @@ from geocosserat.version import VERSION
 
 @lru_cache(maxsize=1)
 def templates_hash() -> str:
-    """Hash of the names and contents of all templates of kernels; pages for people are none."""
+    """Hash of the names and contents of all templates of kernels; those of pages are in a folder below."""
     digest = hashlib.sha256()
     for path in sorted(shipped("templates").glob("*.j2")):
-        if not path.name.endswith(".html.j2"):
-            digest.update(path.name.encode() + b"\0" + path.read_bytes())
+        digest.update(path.name.encode() + b"\0" + path.read_bytes())
     return digest.hexdigest()
 
 

@@ -73,7 +73,7 @@ def _template() -> jinja2.Template:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    return found.get_template("referee.html.j2")
+    return found.get_template("pages/referee.html.j2")
 
 
 def _anchors(report: Report) -> dict[str, str]:

@@ -189,7 +189,8 @@ def test_a_page_for_people_is_no_kernel(monkeypatch: pytest.MonkeyPatch, tmp_pat
 
     monkeypatch.setattr("geocosserat.codegen.identity.shipped", lambda _: tmp_path)
     before = found()
-    (tmp_path / "page.html.j2").write_text("a page")
+    (tmp_path / "pages").mkdir()
+    (tmp_path / "pages" / "page.html.j2").write_text("a page")
     with_page = found()
     (tmp_path / "rod.c.j2").write_text("a kernel")
     with_kernel = found()

@@ -15,6 +15,8 @@ from geocosserat.discretisation.semidiscrete import discretise
 from geocosserat.model.scene import load_scene
 from tests.physics.scenes import EXAMPLES, NAMES, Array, example, simulate
 
+pytestmark = pytest.mark.slow
+
 
 @cache
 def _fine(name: str) -> Array:

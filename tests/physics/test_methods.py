@@ -8,6 +8,8 @@ import pytest
 from geocosserat.solver import cvode, integrate
 from tests.physics.scenes import Array, Scene, changed, example, simulate, straight, tip
 
+pytestmark = pytest.mark.slow
+
 SCENES = {name: changed(example(name), {"run.until": until}) for name, until in (("follower", 0.3), ("sinking", 0.02))}
 CURLED = changed(example("helix"), {"rod.reference": [1.0, 0.0, 0.0, 2.0, 0.0, 4.0], "run.until": 0.02})
 

@@ -18,6 +18,8 @@ from tests.references import axial_twist, cantilever_modes, circle, elastica, st
 
 STRAIGHT: Mapping[str, Any] = {"motion": "planar", "length": 1.0}
 
+pytestmark = pytest.mark.slow
+
 
 def _table(path: Path) -> dict[str, Any]:
     return tomllib.loads(path.read_text())
