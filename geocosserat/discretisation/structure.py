@@ -172,7 +172,7 @@ class RodStructure:
 
 def guide(space: int) -> Row:
     """Names of the pose of a course, as formulas use them: position and angle, or position and quaternion."""
-    return tuple(f"home.{name}" for name in ("x", "y", "angle") if space == 2) or tuple(f"home.{c}" for c in "xyzabcd")
+    return tuple(f"home.{name}" for name in (("x", "y", "angle") if space == 2 else "xyzabcd"))
 
 
 def present(formulas: Formulas) -> bool:

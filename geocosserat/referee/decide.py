@@ -54,7 +54,9 @@ def decide(
     of unknowns of their own, less one: x² + y² + ... - 1. Raises ValueError for other rules, and TypeError for
     expressions that are not made of numbers, symbols, sums, products and powers, sin, cos, exp and log.
     """
-    entries = [sp.sympify(e, strict=True).xreplace(dict(parameters or {})) for e in expressions]
+    # strict: expressions and numbers only; text is refused, not read
+    bound = {x: sp.sympify(value, strict=True) for x, value in (parameters or {}).items()}
+    entries = [sp.sympify(e, strict=True).xreplace(bound) for e in expressions]
     spheres = [_sphere(rule) for rule in rules]
     chance = random.Random(seed)
     unknowns = sorted({x for e in entries for x in e.free_symbols}, key=str)

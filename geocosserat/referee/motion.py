@@ -127,9 +127,9 @@ def hat(a: Any) -> Array:
     return np.array([[0, -a[2], a[1]], [a[2], 0, -a[0]], [-a[1], a[0], 0]], dtype=object)
 
 
-def epsilon(n: int = 3) -> Array:
+def epsilon() -> Array:
     """The antisymmetric symbol of three indices, (3, 3, 3), integers."""
-    found = np.zeros((n, n, n), dtype=object)
+    found = np.zeros((3, 3, 3), dtype=object)
     for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
         found[i, j, k], found[i, k, j] = 1, -1
     return found

@@ -154,7 +154,8 @@ def compare(left: Any, right: Any, fields: Jets | None = None, values: Mapping[A
         raise ValueError(f"expected two sides of one shape, found {a.shape} and {b.shape}; bring them to one")
     entries = [sp.sympify(x - y, strict=True) for x, y in zip(a.ravel().tolist(), b.ravel().tolist(), strict=True)]
     if values:
-        entries = [e.xreplace(dict(values)) for e in entries]
+        given = {x: sp.sympify(value, strict=True) for x, value in values.items()}
+        entries = [e.xreplace(given) for e in entries]
     if fields is None:
         return decide(entries)
     return decide(entries, fields.parameters, fields.rules)

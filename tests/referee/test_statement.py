@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
+from geocosserat.referee.decide import decide
 from geocosserat.referee.jets import Jets
 from geocosserat.referee.motion import Motion, cross
 from geocosserat.referee.report import VERDICTS
@@ -150,3 +151,21 @@ def test_every_verdict_is_reached_above() -> None:
     """The table of verdicts misses none."""
     marks = test_a_verdict_is_earned.pytestmark
     assert {case[1] for case in marks[0].args[1]} == set(VERDICTS)
+
+
+@pytest.mark.parametrize("text", ["__import__('os').getpid()", "x**2", "0"])
+def test_text_is_never_read_as_an_expression(text: str) -> None:
+    """Neither as a field, nor in a law, nor as one side of a check: nothing of it is evaluated."""
+    jets = Jets()
+    x = jets.scalar("x")
+    for read in (
+        lambda: decide([text]),
+        lambda: decide([x], {x: text}),
+        lambda: jets.law(x, u=text),
+        lambda: jets.du(text),
+        lambda: compare(text, x),
+        lambda: compare([text], [text]),
+        lambda: compare(x, 0, jets, {x: text}),
+    ):
+        with pytest.raises((sp.SympifyError, TypeError)):
+            read()
