@@ -12,7 +12,7 @@ import numpy as np
 
 from geocosserat.accuracy import DEFAULT_ACCURACY, Setting, ladder, position_gap, sees_all
 from geocosserat.discretisation.mesh import Array, Mesh
-from geocosserat.discretisation.sampling import frictionless, left_of_friction
+from geocosserat.discretisation.sampling import frictionless, left_of_friction, stiffnesses
 from geocosserat.discretisation.semidiscrete import SemiDiscrete, discretise
 from geocosserat.discretisation.structure import RodStructure
 from geocosserat.kernel.library import KernelText
@@ -20,7 +20,7 @@ from geocosserat.kernel.load import load
 from geocosserat.kernel.native import NativeRod
 from geocosserat.kernel.pure import NumpyRod
 from geocosserat.model.errors import InputError
-from geocosserat.model.expressions import evaluate, switch_times
+from geocosserat.model.expressions import switch_times
 from geocosserat.model.records import Scene
 from geocosserat.results.checkpoint import Keeper
 from geocosserat.results.progress import progress
@@ -85,11 +85,11 @@ def tolerances(rod: SemiDiscrete, rtol: float, atol: float | None, energy: float
 def _unit_of_energy(scene: Scene, rod: SemiDiscrete, kernel: NativeRod | NumpyRod) -> float:
     """Energy stored at the start, or that of bending the softest way by a radian if that is more."""
     model, group = scene.model, scene.model.group
-    middle = {**model.parameters, "u": model.length / 2}
+    stiff = stiffnesses(model)
     free = [i for i in range(group.dimension) if not rod.structure.frozen[i]]
     # bending by a radian, stretching by the length
     units = [
-        float(evaluate(model.stiffness[i][i], middle)) * model.length ** (1 if i < group.translations else -1)
+        stiff[i] * model.length ** (1 if i < group.translations else -1)
         for i in ([i for i in free if i >= group.translations] or free)
     ]
     return max(kernel.observe(0.0, rod.state)[2], min(units))
@@ -126,6 +126,7 @@ def switches_of(scene: Scene) -> tuple[float, ...]:
     ]
     loads += [end.twist or () for end in (model.left, model.right)]
     loads += [vector for effect in model.effects for vector in effect.values().values()]
+    loads += [model.law.stress or ()] if model.law else []
     return tuple(t for load in loads for e in load for t in switch_times(e, scene.run.until, model.parameters))
 
 

@@ -30,6 +30,12 @@ class _C(C99CodePrinter):  # type: ignore[misc]
             return f"(1.0/({self._print(sp.Pow(base, -power))}))"
         return str(super()._print_Pow(expr))
 
+    def _print_step(self, expr: sp.Function) -> str:
+        return f"heaviside({self._print(expr.args[0])})"
+
+    def _print_size(self, expr: sp.Function) -> str:
+        return f"fabs({self._print(expr.args[0])})"
+
     def _print_Rational(self, expr: sp.Rational) -> str:
         return f"{int(expr.p)}.0/{int(expr.q)}.0"
 
@@ -44,6 +50,12 @@ class _NumPy(NumPyPrinter):  # type: ignore[misc]
 
     def __init__(self) -> None:
         super().__init__({"fully_qualified_modules": True})
+
+    def _print_step(self, expr: sp.Function) -> str:
+        return f"np.heaviside({self._print(expr.args[0])}, 0.5)"
+
+    def _print_size(self, expr: sp.Function) -> str:
+        return f"np.abs({self._print(expr.args[0])})"
 
     def _module_format(self, fqn: str, register: bool = True) -> str:
         return str(super()._module_format(fqn, register)).replace("numpy.", "np.", 1)

@@ -9,7 +9,7 @@ from geocosserat.codegen.printing import print_expression, print_tape
 from geocosserat.codegen.tape import Tape
 from geocosserat.discretisation.cells import POINTS
 from geocosserat.discretisation.structure import ZERO, EndStructure, Matrix, RodStructure, guide
-from geocosserat.model.expressions import symbols, to_text
+from geocosserat.model.expressions import symbols
 
 
 @dataclass(frozen=True)
@@ -156,12 +156,14 @@ class Writer:
             "joined": s.joined,
             "indeterminate": s.indeterminate,
             "active": s.active,
+            "losing": s.losing,
+            "rates": [f"rate_{i + 1}" for i in range(d)],
             "dragged": s.dragged,
             "kinds": [end["kind"] for end in ends],
             "drives": any(end["moved"] for end in ends),
             "pushes": [f"wrench_{i + 1}" in surrounding for i in range(d)],
             "drags": [f"medium_{i + 1}" in surrounding for i in range(d)],
-            "stepping": any("heaviside" in to_text(c.expression) for c in s.timed if c.expression is not None),
+            "stepping": any(word in str(s.describe()) for word in ("heaviside", "abs")),
             "pushed": any(name.startswith("wrench") for name in surrounding),
             "held": [end for end in ends if end["kind"] != "free"],
             "loads": [end for end in ends if end["load"] is not None],

@@ -7,6 +7,7 @@ model: the stress S(E), the frozen modes, the wrench j, the ends. What the scene
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import sympy as sp
@@ -16,10 +17,11 @@ from geocosserat.derivation import acting
 from geocosserat.derivation.convert import exact, to_sympy
 from geocosserat.derivation.distribute import distributed
 from geocosserat.derivation.ends import conditions, joined
-from geocosserat.derivation.notation import T, U, fields
+from geocosserat.derivation.notation import T, U, fields, symbol
 from geocosserat.derivation.orientation import axes_seen, orientation, place, places_seen
 from geocosserat.derivation.records import Equation, Equations, FieldEquations, Vector
 from geocosserat.model.expressions import Expression
+from geocosserat.model.law import Law
 from geocosserat.model.records import RodModel
 
 
@@ -34,11 +36,11 @@ def derive(model: RodModel) -> FieldEquations:
     zero = (sp.S.Zero,) * group.dimension
 
     # laws: a frozen mode is its reference, and its stress is what keeps it there
-    stiffness, friction = _matrix(model.stiffness), _matrix(model.friction)
+    friction = _matrix(model.friction)
     reference = _vector(model.reference)
     E = _chosen(held, reference, fields(group.strain))
-    strain = _chosen(held, zero, _sum(E, tuple(-e for e in reference)))
-    stress_values = _chosen(held, fields(group.stress), _times(stiffness, strain))
+    elasticity = _of_law(model.law, E) if model.law else _of_stiffness(model, reference, E)
+    stress_values = _chosen(held, fields(group.stress), elasticity.stress)
     push = acting.push(group, model.effects)
     medium = acting.medium(group, model.effects)
     slip = _sum(V, tuple(-v for v in medium))
@@ -66,11 +68,9 @@ def derive(model: RodModel) -> FieldEquations:
     compatibility = _equations((e.diff(T) for e in E), _sum(_slope(V), group.bracket(_array(E), _array(V))))
     balance = _equations(_sum(_slope(S), coad @ _array(S), j), zero)
     # where the law steps the stress is continuous and the turn is not: there the stress stays a field
-    elastic = S if _steps(stiffness, reference, held) else stress_values
+    elastic = S if elasticity.steps else stress_values
     motion = (distributed(e) for e in _sum(_slope(elastic), coad @ _array(elastic), carried, push))
 
-    free = [a for a in range(group.dimension) if not held[a]]
-    symmetric = all(stiffness[a, b] == stiffness[b, a] for a in free for b in free)
     return FieldEquations(
         model=model,
         turn=E,
@@ -91,9 +91,36 @@ def derive(model: RodModel) -> FieldEquations:
         motion=_equations(_times(friction, V), motion),
         left=left,
         right=right,
-        energy=_quadratic(stiffness / 2, strain) if symmetric else None,
+        energy=elasticity.energy,
         dissipation=_quadratic(friction, slip),
     )
+
+
+@dataclass(frozen=True)
+class _Elasticity:
+    """Stress of every mode, and its energy density if it has one; steps: whether the stress steps by itself."""
+
+    stress: Vector
+    energy: sp.Expr | None
+    steps: bool
+
+
+def _of_stiffness(model: RodModel, reference: Vector, E: Vector) -> _Elasticity:
+    held, d = model.held, model.group.dimension
+    stiffness = _matrix(model.stiffness)
+    strain = _chosen(held, (sp.S.Zero,) * d, _sum(E, tuple(-e for e in reference)))
+    free = [a for a in range(d) if not held[a]]
+    symmetric = all(stiffness[a, b] == stiffness[b, a] for a in free for b in free)
+    energy = _quadratic(stiffness / 2, strain) if symmetric else None
+    return _Elasticity(_times(stiffness, strain), energy, _steps(stiffness, reference, held))
+
+
+def _of_law(law: Law, E: Vector) -> _Elasticity:
+    values = dict(zip((symbol(name) for name in law.group.strain), E, strict=True))
+    stress = tuple(e.xreplace(values) for e in _vector(law.stress or ()))
+    known = law.energy is not None and not law.remainder
+    energy = to_sympy(law.energy).xreplace(values) if known and law.energy is not None else None
+    return _Elasticity(stress, energy, any(e.has(sp.Heaviside) for e in stress))
 
 
 def _steps(stiffness: Array, reference: Vector, held: Sequence[bool]) -> bool:

@@ -24,6 +24,8 @@ _NOTHING: Final = Formula("", "", "")
 _WEIGHT: Final = Formula(" + Rᵀ f", " + R^T f", r" + R^{\mathsf T} f")
 _BODY: Final = Formula(" + j(u, t)", " + j(u, t)", " + j(u, t)")
 _WORLD: Final = Formula(" + j(φ)", " + j(phi)", r" + j(\varphi)")
+_LINEAR: Final = Formula("Σ = K (E - Ē)", "S = K (E - E0)", r"\Sigma = K (E - \bar E)")
+_LAW: Final = Formula("Σ = Σ(E)", "S = S(E)", r"\Sigma = \Sigma(E)")
 _STILL: Final = Formula("j = -Γ V", "j = -Gamma V", r"j = -\Gamma V")
 _MOVING: Final = Formula("j = -Γ (V - Vₘ)", "j = -Gamma (V - V_m)", r"j = -\Gamma (V - V_m)")
 _MOTION: Final = Formula(
@@ -67,7 +69,7 @@ def constraints(equations: FieldEquations) -> list[Section]:
 
 def stress(equations: FieldEquations) -> Section:
     """The stress by its law, and which of it has none."""
-    formula = Formula("Σ = K (E - Ē)", "S = K (E - E0)", r"\Sigma = K (E - \bar E)")
+    formula = _LAW if equations.model.law else _LINEAR
     remark = multipliers_in_words(equations) if equations.multipliers else ""
     return Section("Stress", equations.stress_law, formula if equations.stress_law else None, remark=remark)
 

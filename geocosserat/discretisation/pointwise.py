@@ -18,8 +18,8 @@ import numpy as np
 import sympy as sp
 
 from geocosserat.algebra.groups import Group
-from geocosserat.derivation.convert import to_sympy
-from geocosserat.discretisation.structure import ONE, ZERO, Matrix, RodStructure
+from geocosserat.discretisation.material import entries, entry, formula, material
+from geocosserat.discretisation.structure import RodStructure
 from geocosserat.model.expressions import Expression, Number
 
 Named = Mapping[str, sp.Expr]
@@ -37,7 +37,8 @@ class Pointwise:
     velocity: v1, ... in terms of drive_i (force density that friction balances) and mobility; slip_i, relative to
     the medium, and medium_i as a name, if the medium moves
     energy: energy, elastic energy density, in terms of the state and the stress
-    activity: power density of the reference that moves, in terms of the stress; empty if it does not
+    supply: power density of the reference that moves, in terms of the stress, or of a law that changes in time
+    loss: power density of the part of the stress that stores nothing, in terms of the state and rate_i
     advection: advection_i_j = d rate_i / d state_j at fixed twist, in terms of value_i
     bracket: ad_i_j, the matrix of ad_E
     surroundings: wrench_i and medium_i (not the zeros), in terms of coefficients and what is seen
@@ -56,7 +57,8 @@ class Pointwise:
     strain_rate: Named
     velocity: Named
     energy: Named
-    activity: Named
+    supply: Named
+    loss: Named
     advection: Named
     bracket: Named
     surroundings: Named
@@ -69,14 +71,6 @@ class Pointwise:
 
 def _symbols(stem: str, d: int) -> np.ndarray:
     return np.array([sp.Symbol(f"{stem}_{i + 1}") for i in range(d)], dtype=object)
-
-
-def _entry(name: str) -> sp.Expr:
-    return sp.Integer(0) if name == ZERO else sp.Integer(1) if name == ONE else sp.Symbol(name)
-
-
-def _matrix(names: Matrix) -> np.ndarray:
-    return np.array([[_entry(name) for name in row] for row in names], dtype=object)
 
 
 def _named(stem: str, matrix: np.ndarray) -> dict[str, sp.Expr]:
@@ -117,13 +111,8 @@ def _pose(group: Group) -> tuple[tuple[sp.Symbol, ...], Named, Named]:
 
 
 def _formulas(stem: str, formulas: Iterable[Expression]) -> Named:
-    """Formulas of the structure as symbolic ones, the zeros left out; a dot in a name becomes an underscore."""
-    found = {}
-    for i, e in enumerate(formulas, start=1):
-        if e != Number(0.0):
-            exact = to_sympy(e)
-            found[f"{stem}_{i}"] = exact.xreplace({s: sp.Symbol(s.name.replace(".", "_")) for s in exact.free_symbols})
-    return found
+    """Formulas of the structure as symbolic ones, the zeros left out."""
+    return {f"{stem}_{i}": formula(e) for i, e in enumerate(formulas, start=1) if e != Number(0.0)}
 
 
 def pointwise(structure: RodStructure) -> Pointwise:
@@ -131,15 +120,14 @@ def pointwise(structure: RodStructure) -> Pointwise:
     group, frozen = structure.group, structure.frozen
     d = group.dimension
     state = [sp.Symbol(name) for name in structure.state_names]
-    rest = [_entry(name) for name in structure.reference]
+    rest = [entry(name) for name in structure.reference]
     turn = np.array([r if held else s for s, r, held in zip(state, rest, frozen, strict=True)], dtype=object)
     stress = np.array([sp.Symbol(name) for name in group.stress], dtype=object)
     slope, value, drive = _symbols("slope", d), _symbols("value", d), _symbols("drive", d)
-    strain = turn - np.array(rest, dtype=object)
-    law = _matrix(structure.stiffness) @ strain
+    made_of = material(structure, turn, stress)
     ad = group.ad(turn)
     rates = slope + ad @ value
-    moving = np.array([_entry(name) for name in structure.reference_rate], dtype=object)
+    moving = np.array([entry(name) for name in structure.reference_rate], dtype=object)
     # d(ad_E W)/dE = -ad_W, and frozen modes do not change
     advection = -group.ad(value) * np.array([0 if held else 1 for held in frozen], dtype=object)
     for i in (i for i, held in enumerate(frozen) if held):
@@ -148,7 +136,7 @@ def pointwise(structure: RodStructure) -> Pointwise:
             slack = sp.Symbol(f"slack_{group.stress[i]}")
             rates[i] -= slack * stress[i]
             advection[i, i] -= slack
-    slip = _matrix(structure.mobility) @ drive
+    slip = entries(structure.mobility) @ drive
     velocity = dict(zip(group.twist, slip, strict=True))
     if structure.dragged:
         velocity = {f"slip_{i}": e for i, e in enumerate(slip, start=1)}
@@ -160,12 +148,13 @@ def pointwise(structure: RodStructure) -> Pointwise:
         group=group,
         state=tuple(state),
         turn={f"turn_{i + 1}": e for i, e in enumerate(turn)},
-        stress={name: e for name, e, held in zip(group.stress, law, frozen, strict=True) if not held},
+        stress={name: e for name, e, held in zip(group.stress, made_of.stress, frozen, strict=True) if not held},
         pull={f"pull_{i + 1}": e for i, e in enumerate(-(group.coad(turn) @ stress))},
         strain_rate={f"rate_{i + 1}": e for i, e in enumerate(rates)},
         velocity=velocity,
-        energy={"energy": sp.Rational(1, 2) * (strain @ stress)},
-        activity={"activity": -(moving @ stress)} if structure.active else {},
+        energy={"energy": made_of.energy},
+        supply={} if made_of.supply is None else {"supply": made_of.supply},
+        loss={} if made_of.loss is None else {"loss": made_of.loss},
         advection=_named("advection", advection),
         bracket=_named("ad", ad),
         surroundings={**_formulas("wrench", structure.wrench), **_formulas("medium", structure.medium)},

@@ -72,7 +72,8 @@ def sample(structure: RodStructure, scene: Scene, mesh: Mesh, start: Poses) -> t
     }
 
     homes = {f"{side}_{name}": x for side, n in (("left", 0), ("right", -1)) for name, x in _home(start, n).items()}
-    homes["left_pull"] = homes["right_pull"] = _pull(model, friction)
+    # between two nodes nothing strays: the turn follows what is prescribed to both, and nothing else
+    homes["left_pull"] = homes["right_pull"] = _pull(model, friction) if len(u) > 2 else 0.0
 
     def entry(c: Coefficient) -> Array:
         if c.name in homes:
@@ -100,6 +101,13 @@ def sample(structure: RodStructure, scene: Scene, mesh: Mesh, start: Poses) -> t
     )
 
 
+def stiffnesses(model: RodModel) -> list[float]:
+    """About how stiff each mode is, in the middle of the rod: positive, whatever its law does at the reference."""
+    middle = {**model.parameters, "u": model.length / 2}
+    found = [abs(float(evaluate(row[i], middle))) for i, row in enumerate(model.stiffness)]
+    return [x or max(found) or 1.0 for x in found]
+
+
 def _slack(model: RodModel, friction: Array, stress: str) -> float:
     """How much a frozen mode yields to its stress where both ends are held (1 / time / stress).
 
@@ -120,9 +128,7 @@ def _home(start: Poses, n: int) -> dict[str, float]:
 
 def _pull(model: RodModel, friction: Array) -> float:
     """How fast an end that strayed returns (1 / time): PULL times as fast as the softest mode of the rod relaxes."""
-    middle = {**model.parameters, "u": model.length / 2}
-    turns = range(model.group.translations, model.group.dimension)
-    soft = min(float(evaluate(model.stiffness[i][i], middle)) for i in turns)
+    soft = min(stiffnesses(model)[model.group.translations :])
     return PULL * soft / (float(friction[:, 0, 0].max()) * model.length**4)
 
 

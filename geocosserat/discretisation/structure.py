@@ -56,11 +56,29 @@ class EndStructure:
 
 
 @dataclass(frozen=True)
+class LawStructure:
+    """A law in place of a stiffness: formulas of the turn by the names of its components, coefficients and t.
+
+    stress (d). energy: density of what is stored. remainder: the part of the stress that stores nothing, d formulas,
+    or none. supply: power density of what changes the law in time.
+    """
+
+    stress: Formulas
+    energy: Expression
+    remainder: Formulas
+    supply: Expression
+
+    def describe(self) -> list[object]:
+        return [[to_text(e) for e in f] for f in (self.stress, (self.energy,), self.remainder, (self.supply,))]
+
+
+@dataclass(frozen=True)
 class RodStructure:
     """The skeleton of a semi-discrete rod; equal structures have equal kernels.
 
     frozen (d): the modes held at their reference; their stress takes their place in the state.
     stiffness, mobility (d, d) and reference, reference_rate (d): names of coefficients, or "0", or "1".
+    law: instead of the stiffness; reference is then that of frozen modes alone.
     wrench, medium (d): density of wrench, and twist of the medium, in the moving frame: formulas of coefficients and
     of what is seen. base: the end that poses are marched from. Where it moves, its pose is part of the state (carried),
     unless it is driven: that pose follows from the time alone (prescribed).
@@ -80,6 +98,7 @@ class RodStructure:
     base: Literal["left", "right"]
     moving_base: bool
     coefficients: tuple[Coefficient, ...]
+    law: LawStructure | None = None
 
     @property
     def group(self) -> Group:
@@ -131,8 +150,14 @@ class RodStructure:
 
     @property
     def active(self) -> bool:
-        """Whether the reference changes in time."""
-        return any(name != ZERO for name in self.reference_rate)
+        """Whether the reference, or the law itself, changes in time."""
+        changing = self.law is not None and self.law.supply != Number(0.0)
+        return changing or any(name != ZERO for name in self.reference_rate)
+
+    @property
+    def losing(self) -> bool:
+        """Whether part of the stress stores nothing."""
+        return self.law is not None and present(self.law.remainder)
 
     @property
     def dragged(self) -> bool:
@@ -164,6 +189,7 @@ class RodStructure:
             "medium": [to_text(e) for e in self.medium],
             "base": self.base,
             "moving_base": self.moving_base,
+            "law": self.law.describe() if self.law else None,
             "coefficients": [
                 [c.name, c.place, to_text(c.expression) if c.timed and c.expression else ""] for c in self.coefficients
             ],

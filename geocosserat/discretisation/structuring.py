@@ -10,6 +10,7 @@ from geocosserat.discretisation.structure import (
     Coefficient,
     EndStructure,
     Formulas,
+    LawStructure,
     Matrix,
     Place,
     RodStructure,
@@ -26,8 +27,10 @@ from geocosserat.model.expressions import (
     Symbol,
     constant,
     derivative,
+    substitute,
     symbols,
 )
+from geocosserat.model.law import Law
 from geocosserat.model.records import End, RodModel
 from geocosserat.model.seen import AXES, Seen, cross, nothing, seen
 
@@ -58,11 +61,11 @@ class _Names:
         named = self.add(name, expression, varying)
         return Number(0.0) if named == ZERO else Symbol(named)
 
-    def _inputs(self, e: Expression, varying: Place) -> Expression:
-        """`e` in terms of t, u and coefficients: its parameters, and its steps along the rod (which are sampled from
-        both sides of a node, like all else)."""
+    def _inputs(self, e: Expression, varying: Place, kept: Sequence[str] = ("t", "u")) -> Expression:
+        """`e` in terms of t, u (or what else is kept) and coefficients: its parameters, and its steps along the rod
+        (which are sampled from both sides of a node, like all else)."""
         match e:
-            case Symbol(parameter) if parameter not in ("t", "u"):
+            case Symbol(parameter) if parameter not in kept:
                 # a prefix keeps the user's names apart from those of the kernel
                 self.found[f"p_{parameter}"] = Coefficient(f"p_{parameter}", "uniform", e)
                 return Symbol(f"p_{parameter}")
@@ -71,13 +74,21 @@ class _Names:
                 self.found[name] = Coefficient(name, varying, e)
                 return Symbol(name)
             case Call(function, argument):
-                return Call(function, self._inputs(argument, varying))
+                return Call(function, self._inputs(argument, varying, kept))
             case Negate(operand):
-                return Negate(self._inputs(operand, varying))
+                return Negate(self._inputs(operand, varying, kept))
             case Binary(operator, left, right):
-                return Binary(operator, self._inputs(left, varying), self._inputs(right, varying))
+                return Binary(operator, self._inputs(left, varying, kept), self._inputs(right, varying, kept))
             case _:
                 return e
+
+    def law(self, e: Expression, turn: Sequence[str]) -> Expression:
+        """`e` in terms of t, the turn and coefficients; u is one of them."""
+        written = self._inputs(e, "point", ("t", "u", *turn))
+        if "u" not in symbols(written):
+            return written
+        self.found["along"] = Coefficient("along", "point", Symbol("u"))
+        return substitute(written, {"u": Symbol("along")})
 
     def sampled(self, name: str) -> Expression:
         """A number that is no expression of the scene's."""
@@ -169,7 +180,7 @@ def _stirred(model: RodModel) -> bool:
     ends = (model.left, model.right)
     if any(end.kind == "driven" or end.force or end.torque for end in ends):
         return True
-    timed = any("t" in symbols(e) for e in model.reference)
+    timed = any("t" in symbols(e) for e in (*model.reference, *((model.law.stress or ()) if model.law else ())))
     timed |= any("t" in symbols(e) for effect in model.effects for value in effect.values().values() for e in value)
     flows = any(present((*velocity, *spin)) for velocity, spin in (e.medium(frame) for e in model.effects))
     return timed or flows or any(effect.potential(frame) is None for effect in model.effects)
@@ -241,14 +252,36 @@ def _named_effects(names: _Names, effects: Sequence[Effect]) -> list[Effect]:
     return found
 
 
+def _law(names: _Names, law: Law, group: Group, frozen: Sequence[bool]) -> LawStructure:
+    """The law of the modes that are free. Without an energy that is known, the whole stress stores nothing."""
+    assert law.stress is not None
+    remainder = law.remainder if law.energy is not None else law.stress
+
+    def free(vector: Sequence[Expression]) -> Formulas:
+        kept = (Number(0.0) if held else e for e, held in zip(vector, frozen, strict=True))
+        return tuple(names.law(e, group.strain) for e in kept)
+
+    energy = law.energy if law.energy is not None else Number(0.0)
+    return LawStructure(
+        stress=free(law.stress),
+        energy=names.law(energy, group.strain),
+        remainder=free(remainder) if remainder else (),
+        supply=names.law(derivative(energy, "t"), group.strain),
+    )
+
+
 def structure_of(model: RodModel) -> RodStructure:
     """The structure of the kernel that `model` calls for."""
     group, names = model.group, _Names()
     frozen = model.held
-    stiffness = names.stiffness(model.stiffness, frozen)
+    law = _law(names, model.law, group, frozen) if model.law else None
+    if law is None:
+        stiffness = names.stiffness(model.stiffness, frozen)
+    else:
+        stiffness = ((ZERO,) * group.dimension,) * group.dimension
     reference = tuple(
-        ONE if constant(e) == 1.0 else names.add(f"rest_{name}", e, "point")
-        for name, e in zip(group.strain, model.reference, strict=True)
+        ZERO if law and not held else ONE if constant(e) == 1.0 else names.add(f"rest_{name}", e, "point")
+        for name, e, held in zip(group.strain, model.reference, frozen, strict=True)
     )
     reference_rate = tuple(
         names.add(f"rate_{name}", derivative(e, "t"), "point")
@@ -286,4 +319,5 @@ def structure_of(model: RodModel) -> RodStructure:
         base="left" if base == "left" else "right",
         moving_base=(left if base == "left" else right).kind != "clamped",
         coefficients=tuple(names.found.values()),
+        law=law,
     )

@@ -20,35 +20,36 @@ MAX_LEVELS = 8
 
 @dataclass(frozen=True, slots=True)
 class Read:
-    """The plain values of a scene, its text (None for a mapping) and its file (None if there is none)."""
+    """The plain values of a scene or a law, its text (None for a mapping) and its file (None if there is none)."""
 
     values: dict[str, Any]
     text: str | None
     path: str | None
+    what: str = "scene"
 
     @property
     def file(self) -> str:
         """The name for messages."""
-        return self.path or "scene"
+        return self.path or self.what
 
 
-def read(scene: str | os.PathLike[str] | Mapping[str, Any]) -> Read:
-    """Read a scene from a file, from TOML text (a str with a line break in it) or from a mapping.
+def read(scene: str | os.PathLike[str] | Mapping[str, Any], what: str = "scene") -> Read:
+    """Read a scene, or ``what`` else, from a file, from TOML text (a str with a line break in it) or from a mapping.
 
     Raises InputError for a file that cannot be read, is larger than 1 MB or not UTF-8, for a line of more
     than 12 000 characters and for invalid TOML.
     """
     if isinstance(scene, Mapping):
-        values = _plain(Place("scene"), scene, 0)
+        values = _plain(Place(what), scene, 0)
         assert isinstance(values, dict)
-        return Read(values, None, None)
+        return Read(values, None, None, what)
     if isinstance(scene, str) and "\n" in scene:
-        return Read(_tables("scene", scene), scene, None)
+        return Read(_tables(what, scene, what), scene, None, what)
     if not isinstance(scene, str | os.PathLike):
-        raise InputError("a path, TOML text or a mapping", shown(scene), "pass one of these", key="scene")
+        raise InputError("a path, TOML text or a mapping", shown(scene), "pass one of these", key=what)
     path = os.fspath(scene)
     text = _text(path)
-    return Read(_tables(path, text), text, path)
+    return Read(_tables(path, text, what), text, path, what)
 
 
 def _text(path: str) -> str:
@@ -75,9 +76,9 @@ def shown_path(path: str) -> str:
     return path if path.isprintable() and path else ascii(path)
 
 
-def _tables(file: str, text: str) -> dict[str, Any]:
+def _tables(file: str, text: str, what: str) -> dict[str, Any]:
     if len(text) > MAX_BYTES or len(text.encode("utf-8", "replace")) > MAX_BYTES:
-        raise InputError("at most 1 MB", "more", "a scene is a short text; is this the right file?", file=file)
+        raise InputError("at most 1 MB", "more", f"a {what} is a short text; is this the right file?", file=file)
     for number, line in enumerate(text.split("\n"), start=1):
         if len(line) > MAX_LINE:
             raise InputError(
@@ -96,7 +97,7 @@ def _tables(file: str, text: str) -> dict[str, Any]:
 
 
 def _plain(place: Place, value: Any, level: int) -> Any:
-    """A copy in Python's own types, no deeper than any scene is."""
+    """A copy in Python's own types, no deeper than any scene or law is."""
     if level > MAX_LEVELS:
         raise place.wrong(f"at most {MAX_LEVELS} levels of nesting", Found("more"), "write it flatter")
     match value:

@@ -14,6 +14,7 @@ from geocosserat.algebra.groups import Group
 from geocosserat.model.describe import matrix_text, named_text, number_text, vector_text
 from geocosserat.model.effects.effect import Effect
 from geocosserat.model.expressions import Expression
+from geocosserat.model.law import Law
 
 Vector: TypeAlias = tuple[Expression, ...]
 Matrix: TypeAlias = tuple[tuple[Expression, ...], ...]
@@ -59,7 +60,8 @@ class RodModel:
     ``friction``: Γ, likewise in the order of ``group.twist`` (force x time / length² for translations, force
     x time for rotations), where a rotation may have none. ``reference``: the turn at rest, expressions of ``u`` and,
     if it is active, of ``t``. ``frozen``: modes held at their reference, whatever their stiffness. ``joined``: the ends
-    are one point; ``left`` and ``right`` are then free of load.
+    are one point; ``left`` and ``right`` are then free of load. ``law``: what gives the stress in place of the
+    stiffness, which then is the law's tangent at the reference and says no more than how stiff the rod is about.
     """
 
     group: Group
@@ -73,6 +75,7 @@ class RodModel:
     effects: tuple[Effect, ...] = ()
     joined: bool = False
     parameters: Mapping[str, float] = field(default_factory=dict)
+    law: Law | None = None
 
     @property
     def held(self) -> tuple[bool, ...]:
@@ -83,7 +86,7 @@ class RodModel:
         group = self.group
         lines = [
             f"rod in {group.name}, length {number_text(self.length)}",
-            f"  stiffness  {matrix_text(self.stiffness, group.strain)}",
+            *self._elasticity(),
             f"  friction   {matrix_text(self.friction, group.twist)}",
             f"  reference  {named_text(self.reference, group.strain)}",
             *([f"  frozen     {', '.join(self.frozen)}"] if self.frozen else []),
@@ -94,6 +97,13 @@ class RodModel:
             values = (f"{name} = {number_text(value)}" for name, value in self.parameters.items())
             lines.append(f"  parameters {', '.join(values)}")
         return "\n".join(lines)
+
+    def _elasticity(self) -> Iterator[str]:
+        if self.law is None:
+            yield f"  stiffness  {matrix_text(self.stiffness, self.group.strain)}"
+        elif self.law.stress is not None:
+            yield f"  law        {self.law.name}"
+            yield f"  stress     {named_text(self.law.stress, self.group.stress)}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,6 +15,7 @@ from geocosserat.model.parameters import read_parameters
 from geocosserat.model.place import NOTHING, Place
 from geocosserat.model.reading import read
 from geocosserat.model.records import Backend, End, RodModel, RunSettings, Scene
+from geocosserat.model.rod_law import check_law_starts, read_law, read_law_wrench, take_in_law
 from geocosserat.model.schema import (
     BACKENDS,
     DEFAULT_ACCURACY,
@@ -48,34 +49,43 @@ def load_scene(scene: str | os.PathLike[str] | Mapping[str, Any], settings: Sequ
     """
     given = read(scene)
     settings = (settings,) if isinstance(settings, str) else tuple(settings)
+    taken = take_in_law(given)
     apply_settings(given.values, settings, given.file)
+    taken |= take_in_law(given)
     place = Place(given.file)
     table = Table(place, given.values, SCENE_KEYS)
     parameters = read_parameters(*table.at("parameters")) if "parameters" in table else {}
     rod = Table(*_required_table(table, "rod"), ROD_KEYS)
     group = group_of(word(*rod.at("motion"), MOTIONS))
+    law = read_law(rod, group, parameters)
+    parameters = {**(law.parameters if law else {}), **parameters}
     names = Names(parameters, number(*rod.at("length"), Names(parameters), positive=True))
     run = _read_run(Table(*_required_table(table, "run"), RUN_KEYS), names)
     ends = Table(*_optional_table(table, "ends"), ENDS_KEYS)
     joined = read_joined(ends)
     left, right = (End("free"), End("free")) if joined else read_ends(ends, group, names, run.until)
     at, effects = table.at("effects")
+    law_place = rod.at("law")[0]
+    acting = read_effects(at, effects, group, names, run.until) if "effects" in table else ()
+    reference = read_reference(rod, group, names, run.until, law)
     model = RodModel(
         group=group,
         length=names.length,
-        stiffness=read_stiffness(rod, group, names),
-        friction=read_friction(rod, group, names),
-        reference=read_reference(rod, group, names, run.until),
+        stiffness=read_stiffness(rod, group, names, law, reference),
+        friction=read_friction(rod, group, names, law),
+        reference=reference,
         frozen=read_frozen(rod, group),
         left=left,
         right=right,
-        effects=read_effects(at, effects, group, names, run.until) if "effects" in table else (),
+        effects=(*acting, *read_law_wrench(law_place, law)),
         joined=joined,
         parameters=parameters,
+        law=law if law is not None and law.stress is not None else None,
     )
     start = read_start(Table(*_optional_table(table, "start"), START_KEYS), rod, model, names)
+    check_law_starts(law_place, model, start, names)
     title = _read_title(*table.at("title")) if "title" in table else "untitled"
-    unchanged = given.text is not None and not settings
+    unchanged = given.text is not None and not settings and not taken
     source = cast(str, given.text) if unchanged else to_toml(given.values)
     return Scene(title, model, start, run, source, given.path)
 

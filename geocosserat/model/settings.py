@@ -64,7 +64,7 @@ def _value(text: str) -> Any:
 def _steps(values: dict[str, Any], key: str, file: str) -> list[str]:
     parameters = values.get("parameters")
     names = list(parameters) if isinstance(parameters, dict) else []
-    if key in names:
+    if key in names or key in _of_law(values):
         return ["parameters", key]
     steps = key.split(".")
     known = scene_paths()
@@ -79,6 +79,15 @@ def _steps(values: dict[str, Any], key: str, file: str) -> list[str]:
         index = steps[1] if steps[1].isdigit() else "0"
         known = tuple(f"effects.{index}.{each}" for each in sorted(keys))
     raise _unknown(key, names, known, file)
+
+
+def _of_law(values: dict[str, Any]) -> tuple[str, ...]:
+    """Names of the parameters of the rod's law, which those of the scene override."""
+    for step in ("rod", "law", "parameters"):
+        values = values.get(step, {})
+        if not isinstance(values, dict):
+            return ()
+    return tuple(values)
 
 
 def _unknown(key: str, names: list[str], known: tuple[str, ...], file: str) -> Exception:

@@ -257,6 +257,7 @@ class Rod:
         self, scene: Scene, edges: Sequence[float], degree: int, base: Array, given: Mapping[str, float] | None = None
     ) -> None:
         self.model = model = scene.model
+        self.wrench_of_law = model.law.wrench if model.law else ()
         self.table = element(degree)
         self.planar = model.group.rotations == 1
         self.space = model.group.translations
@@ -278,6 +279,7 @@ class Rod:
         self.frozen = [name in model.frozen for name in model.group.strain]
         self.given = {name: MP.mpf(x) for name, x in (given or {}).items()}
         self.slack = [self.given.get(f"slack_{name}", MP.mpf(0)) for name in model.group.stress]
+        self.law: Any = model.law
         self.stiffness = [self.matrix(model.stiffness, {"u": u}) for u in self.u_point]
         self.friction = self._friction(model)
         """(N, 6, 6), zero where the plane has no component."""
@@ -363,12 +365,39 @@ class Rod:
             for i in range(d):
                 strain = [K[i, j] * (E[j, q] - rest[j, q]) for j in range(d) if not held[j]]
                 S[i, q] = given[i, q] if held[i] else sum(strain)
+        if self.law:
+            for q, u in enumerate(self.u_point):
+                law = self.vector(self.law.stress, {**self.names(E[:, q]), "u": u, "t": t})
+                S[~held, q] = law[~held]
         return E, S, self.moved(t, y[d * Q : d * Q + self.carried])
 
+    def names(self, turn: Array) -> dict[str, Any]:
+        """A turn (d,) by the names of its components."""
+        return dict(zip(self.model.group.strain, turn, strict=True))
+
+    def density(self, t: Any, E: Array) -> Array:
+        """What a law says is stored at each point, if it knows."""
+        if self.law.energy is None:
+            return zeros(self.Q)
+        points = enumerate(self.u_point)
+        return np.array([self.vector([self.law.energy], {**self.names(E[:, q]), "u": u, "t": t})[0] for q, u in points])
+
+    def conserved(self, t: Any, E: Array) -> tuple[Array, Array]:
+        """The part of the stress of a law that stores energy (d, Q), and the power of what changes in time (Q,), by
+        differences (to 25 digits)."""
+        step, gradient = MP.mpf("1e-13"), []
+        for i in range(self.d):
+            away = zeros(*E.shape)
+            away[i] += step
+            gradient.append((self.density(t, E + away) - self.density(t, E - away)) / (2 * step))
+        return np.stack(gradient), (self.density(t + step, E) - self.density(t - step, E)) / (2 * step)
+
     def energy(self, t: float, y: Array) -> Any:
-        """Stored energy: the Gauss sum of strain . K strain / 2."""
+        """Stored energy: the Gauss sum of strain . K strain / 2, or of what the law says."""
         t = MP.mpf(t)
         E, S, _ = self.unpack(t, numbers(y))
+        if self.law:
+            return self.integral(self.density(t, E))
         density = ((E - self.reference(t)) * S).sum(axis=0) / 2
         return self.integral(density)
 
@@ -478,6 +507,12 @@ class Rod:
                 vorticity = np.array([G[2, 1] - G[1, 2], G[0, 2] - G[2, 0], G[1, 0] - G[0, 1]], dtype=object)
                 medium[:3] = R.T @ (self.three(read("velocity")) + G @ r)
                 medium[3:] = R.T @ vorticity / 2
+            case "law":
+                seen = {axis: x for axis, x in zip("xyz", r, strict=True)}
+                angle = MP.atan2(R[1, 0], R[0, 0])
+                frame = {f"e{i + 1}{axis}": R[k, i] for k, axis in enumerate("xyz") for i in range(3)}
+                law = self.vector(self.wrench_of_law, {**names, **seen, **frame, "theta": angle})
+                wrench += self.six(law)
             case kind:
                 raise TypeError(f"expected an effect known here, found {kind}")
         return wrench, medium
@@ -589,7 +624,13 @@ class Rod:
             if end.kind != "free":  # whatever holds it does the work that is missing from the balance
                 worked -= (m.force + m.load + self.mass * m.wrench)[:, n] @ V[:, n]
                 worked -= self.mass[n] * m.drag[:, n] @ (m.slip + m.medium)[:, n]
-        worked -= self.integral((moving * S).sum(axis=0))
+        if self.law:
+            free, turn = ~np.array(self.frozen), m.turn[self.kept]
+            storing, supplied = self.conserved(MP.mpf(t), turn)
+            lost += self.integral(((S - storing) * rates)[free].sum(axis=0))
+            worked += self.integral(supplied)
+        else:
+            worked -= self.integral((moving * S).sum(axis=0))
         pose = self.pose_rate(y[d * Q : d * Q + self.carried], V[:, self.base_node])
         return np.concatenate([rates.ravel(), pose, np.array([lost, worked])])
 

@@ -139,6 +139,34 @@ def closed(motion: str) -> dict[str, Any]:
     return {"reference": [1, 0, bend] if motion == "planar" else [1, 0, 0, 0, 0, bend]}
 
 
+ODD = {
+    "planar": {
+        "motion": "planar",
+        "parameters": {"a": 0.4, "k": "2 + 0.5"},
+        "stress": {
+            "F1": "3*(h1 - 1) + a*abs(Pi - 0.1)*h2", "F2": "2*h2 + a*Pi**3", "M": "k*tanh(Pi) - a*h2*cos(t + u)",
+        },
+        "wrench": {"f1": "0.3*cos(theta) + a*y", "f2": "-0.3*sin(theta)", "m": "0.1*sin(theta)*x*t"},
+    },
+    "spatial": {
+        "motion": "spatial",
+        "parameters": {"a": 0.4, "k": "2 + 0.5"},
+        "stress": {
+            "F1": "3*(h1 - 1) + a*abs(Pi1 - 0.1)*h2", "F2": "2*h2 + a*Pi1**3", "F3": "2.5*h3 - a*Pi2/(2 + h1**2)",
+            "M1": "k*tanh(Pi1) - a*h2*cos(t + u)", "M2": "1.5*Pi2 + a*Pi3*heaviside(h1)", "M3": "1.2*Pi3 - a*Pi2",
+        },
+        "wrench": {"f1": "0.3*e1z + a*y", "f2": "0.3*e2z - z", "m1": "0.1*e3x*x*t", "m3": "e1y"},
+    },
+}  # fmt: skip
+"""Laws without an energy that is known, and loads without a potential."""
+
+SOFT = {
+    "planar": "1.5*(h1 - 1)**2 + h2**2*(1 + 0.3*heaviside(u - 0.65)) + log(cosh(k*(Pi - sin(t))))/k + 0.2*h1*Pi**2",
+    "spatial": "1.5*(h1 - 1)**2 + h2**2*(1 + 0.3*heaviside(u - 0.65)) + 1.1*h3**2 + 0.2*h1*Pi2**2 "
+    "+ log(cosh(k*(Pi1 - sin(t))))/k + exp(0.2*Pi2*Pi3) + 0.7*Pi2**2 + sqrt(1 + u + Pi3**2)",
+}
+"""Energy densities that are not quadratic, and change in time."""
+
 ACTIVE = {
     "planar": ["1 + 0.1*sin(u - t)", 0.1, "2*cos(u + 3*t)"],
     "spatial": ["1 + 0.1*sin(u - t)", 0.1, "0.2*t", "u", "2*cos(u + 3*t)", -0.5],
@@ -259,6 +287,18 @@ def cast(motion: str) -> dict[str, dict[str, Any]]:
                 {"kind": "trap", "stiffness": 0.9, "centre": cut(motion, 0.2, "0.3*t", -0.1)},
             ],
         ),
+        "odd": _rod(
+            motion,
+            {"law": ODD[motion], "friction": full(motion, "u"), "frozen": ["h2"], **curved},
+            ends={"left": CLAMPED, "right": load(motion, 0.5, -0.4, 0.3, 0.1, 0.2, 0.3)},
+        ),
+        "soft": _rod(
+            motion,
+            {"law": {"motion": motion, "energy": {"density": SOFT[motion]}, "parameters": {"k": 1}}}
+            | {"friction": blocks(motion)},
+            parameters={"k": 1.2},
+            ends={"left": FREE, "right": pinned(motion, "body")},
+        ),
     }
 
 
@@ -269,14 +309,17 @@ def _bends(motion: str) -> list[str]:
 
 CAST = {f"{motion} {name}": values for motion in MOTIONS for name, values in cast(motion).items()}
 NAMES = tuple(CAST)
-_PLACED = ("held", "stirred", "hinged", "cranked", "reeled", "swept", "wrung", "ring")
+LAWFUL = tuple(name for name in NAMES if name.split()[1] in ("odd", "soft"))
+"""Rods made of a law in place of a stiffness."""
+_PLACED = ("odd", "held", "stirred", "hinged", "cranked", "reeled", "swept", "wrung", "ring")
 _SEEING = ("dead", "hung", "everything", "towed", *_PLACED)
 WORLD = (*(name for name in NAMES if name.split()[1] in _SEEING), "spatial twisted")
 """Rods whose loads see the world."""
 PLACED = tuple(name for name in NAMES if name.split()[1] in _PLACED)
 """Those that see where they are in it."""
 JOINED = tuple(name for name in NAMES if name.split()[1] in ("hoop", "ring"))
-FROZEN = tuple(name for name in NAMES if name.split()[1] in ("cranked", "shaken", "reeled", "towed", "wrung", "ring"))
+_FROZEN = ("cranked", "shaken", "reeled", "towed", "wrung", "ring", "odd")
+FROZEN = tuple(name for name in NAMES if name.split()[1] in _FROZEN)
 
 
 def changed(name: str, **tables: Mapping[str, Any]) -> Scene:

@@ -60,6 +60,7 @@ def test_the_pointwise_kernel_is_what_the_field_equations_say(name: str) -> None
             if c.expression is not None and c.place in ("uniform", "point")
         },
         **{sp.Symbol(f"slack_{s}"): sp.Integer(0) for s in equations.group.stress},
+        sp.Symbol("t"): INSTANT,
     }
     kernel_rates = [sp.N(e.subs(inputs), 30) for e in points.strain_rate.values()]
     assert len(equations.compatibility) == len(kernel_rates) == d

@@ -91,8 +91,10 @@ def test_every_coefficient_stands_where_it_varies(name: str) -> None:
             assert arguments[c.name] == c.place
             continue
         used = symbols(c.expression)
-        if "u" in used:
-            assert c.place == ("node" if c.name.startswith((*kinds, "step")) else "point")
+        if "u" in used and c.name.startswith("step"):
+            assert c.place == ("point" if found.law else "node")
+        elif "u" in used:
+            assert c.place == ("node" if c.name.startswith(kinds) else "point")
         else:
             assert c.place == "uniform"
         assert c.timed == ("t" in used)
@@ -326,11 +328,13 @@ def test_frozen_modes_yield_only_where_both_ends_are_held(name: str) -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_only_a_reference_that_changes_has_a_rate(name: str) -> None:
-    """And just those of its components that do."""
+    """And just those of its components that do; a law that changes is active, too, if it says what is stored."""
     found = structure_of(scene(name).model)
     for mode, e in zip(found.group.strain, scene(name).model.reference, strict=True):
         assert (f"rate_{mode}" in names(found)) == ("t" in symbols(e))
-    assert found.active == any("t" in symbols(e) for e in scene(name).model.reference)
+    law = scene(name).model.law
+    changing = law is not None and law.energy is not None and "t" in symbols(law.energy)
+    assert found.active == (changing or any("t" in symbols(e) for e in scene(name).model.reference))
 
 
 def test_the_mobility_couples_what_the_friction_couples_directly_or_through_others() -> None:

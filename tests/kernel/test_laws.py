@@ -13,13 +13,14 @@ from geocosserat.kernel.pure import NumpyRod
 from geocosserat.model.expressions import evaluate
 from geocosserat.model.records import Scene
 from tests.discretisation import oracle
-from tests.discretisation.rods import MOTIONS, NAMES, PLACED, SIZES, WORLD, random_state, rod, scene, yielding
+from tests.discretisation.rods import LAWFUL, MOTIONS, NAMES, PLACED, SIZES, WORLD, random_state, rod, scene, yielding
 from tests.kernel.kernels import Case, T, cases, kernel, rate, reference, state
 from tests.kernel.mirror import lifted, reversed_scene, reversed_turn, turned
 
 Array = NDArray[np.float64]
 meshes = pytest.mark.parametrize("size", SIZES, ids=str)
 names = pytest.mark.parametrize("name", NAMES)
+told_otherwise = pytest.mark.parametrize("name", [name for name in NAMES if name not in LAWFUL])
 
 
 def numpy_rod(scene: Scene, size: tuple[int, int], pull: float = 0.7) -> tuple[SemiDiscrete, NumpyRod]:
@@ -47,12 +48,17 @@ def along(r: SemiDiscrete, y: Array) -> Array:
 # energy
 
 
-def storing(name: str, size: tuple[int, int], t: float, stress: Array, dy: Array) -> tuple[Array, Array]:
-    """At the points: power that goes into the stored energy, as strains move away from the reference, and power of the
-    stresses of frozen modes as far as they move, which they may not."""
+def storing(name: str, size: tuple[int, int], t: float, y: Array, stress: Array, dy: Array) -> tuple[Array, Array]:
+    """At the points: power that goes into the stored energy, as strains move away from the reference or as a law says
+    and changes, and power of the stresses of frozen modes as far as they move, which they may not."""
     r, exact = rod(name, *size), reference(name, *size)
     frozen = np.array(r.structure.frozen)
     power = r.mesh.weight * stress * (along(r, dy) - oracle.floats(exact.reference_rate(oracle.MP.mpf(t))))
+    if exact.law:
+        instant = oracle.MP.mpf(t)
+        conserved, supplied = map(oracle.floats, exact.conserved(instant, exact.unpack(instant, oracle.numbers(y))[0]))
+        power = r.mesh.weight * conserved * along(r, dy)
+        power[np.flatnonzero(~frozen)[0]] += r.mesh.weight * supplied
     yielding = r.mesh.weight * stress * (along(r, dy) + oracle.floats(np.array(exact.slack))[:, None] * stress)
     return power[~frozen], yielding[frozen]
 
@@ -64,11 +70,11 @@ def test_energy_is_dissipated_worked_or_stored_to_the_last_digits(case: Case) ->
     y = state(case, 11)
     _, stress, _ = kernel(case).observe(T, y)
     dy = rate(case, T, y)
-    stored, yielded = storing(case.name, case[1:3], T, stress, dy)
+    stored, yielded = storing(case.name, case[1:3], T, y, stress, dy)
     lost, gained = dy[-2:]
-    size = np.abs(stored).sum() + np.abs(yielded).sum() + lost + abs(gained)
+    size = np.abs(stored).sum() + np.abs(yielded).sum() + abs(lost) + abs(gained)
     assert abs(stored.sum() + yielded.sum() + lost - gained) <= 2e-14 * size
-    assert lost > 0
+    assert lost > 0 or case.name in LAWFUL
 
 
 @names
@@ -81,7 +87,7 @@ def test_the_stored_energy_changes_as_its_state_does(name: str) -> None:
     step = 1e-4 / max(np.abs(dy).max(), 10)
     ahead, behind = (k.observe(T + sign * step, y + sign * step * dy)[2] for sign in (1, -1))
     stress = k.observe(T, y)[1]
-    power, _ = storing(name, (4, 2), T, stress, dy)
+    power, _ = storing(name, (4, 2), T, y, stress, dy)
     assert (ahead - behind) / (2 * step) == pytest.approx(power.sum(), rel=1e-8)
 
 
@@ -246,7 +252,7 @@ def test_a_rod_that_does_not_see_the_world_moves_alike_everywhere(name: str) -> 
 
 
 @meshes
-@pytest.mark.parametrize("name", WORLD)
+@pytest.mark.parametrize("name", [name for name in WORLD if name not in LAWFUL])
 def test_turning_the_world_with_the_rod_changes_nothing(name: str, size: tuple[int, int]) -> None:
     """Loads and effects turned along with the start, and all of it moved: a million lengths away where only directions
     matter, a few where places do."""
@@ -262,7 +268,7 @@ def test_turning_the_world_with_the_rod_changes_nothing(name: str, size: tuple[i
 
 
 @meshes
-@names
+@told_otherwise
 def test_a_reversed_rod_moves_in_reverse(name: str, size: tuple[int, int]) -> None:
     """Ends swapped, coordinate reversed, frame turned by pi: the same motion, the same energies, to round-off."""
     # held alike at both ends, a rod is drawn home at the one that is last; without a pull both sides are the same
@@ -288,13 +294,13 @@ PLANAR = [name for name in NAMES if name.startswith("planar")]
 
 
 @meshes
-@pytest.mark.parametrize("name", [name for name in PLANAR if name not in WORLD])
+@pytest.mark.parametrize("name", [name for name in PLANAR if name not in (*WORLD, *LAWFUL)])
 def test_a_planar_rod_moves_alike_in_space(name: str, size: tuple[int, int]) -> None:
     """Lifted into space it has the same rates to round-off, and none out of its plane."""
     compare_lifted(name, size, state(Case(name, *size, "numpy"), 19), 1e-13)
 
 
-@pytest.mark.parametrize("name", [name for name in PLANAR if name in WORLD])
+@pytest.mark.parametrize("name", [name for name in PLANAR if name in WORLD and name not in LAWFUL])
 def test_a_planar_rod_that_sees_the_world_moves_alike_in_space(name: str) -> None:
     """There the frames are marched in two ways, which agree where both have converged."""
     compare_lifted(name, (2, 14), smooth_state(rod(name, 2, 14), 20), 1e-11)
