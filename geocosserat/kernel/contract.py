@@ -1,6 +1,7 @@
 """What a solver may ask of a kernel. Solvers see this and nothing else: no rods."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
@@ -54,6 +55,12 @@ class NativeKernel(Protocol):
     def callbacks(self, vector: int, current: int) -> Callbacks:
         """Its callbacks; vector and current are the addresses of N_VGetArrayPointer, and of CVodeGetCurrentGamma or
         IDAGetCurrentCj."""
+
+
+@lru_cache(maxsize=64)
+def is_native(kind: type) -> bool:
+    """Whether kernels of that type are native. Asking each of them takes longer than a step of a small one."""
+    return issubclass(kind, NativeKernel)
 
 
 class Kernel(Protocol):

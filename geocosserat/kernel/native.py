@@ -3,6 +3,7 @@
 cffi hands an array's address to C in a third of the time that ctypes needs (benchmarks/bindings.py).
 """
 
+from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -70,6 +71,13 @@ def _interface() -> cffi.FFI:
     return ffi
 
 
+@lru_cache(maxsize=64)
+def _library(path: Path) -> Any:
+    """The library of that path, which a hash of its source names: opened once, for cffi looks each function up anew in
+    a library that is opened again, which takes longer than a short run."""
+    return _interface().dlopen(str(path))
+
+
 class NativeRod:
     """The kernel of a semi-discrete rod in C. One call at a time: it owns its work space."""
 
@@ -77,7 +85,7 @@ class NativeRod:
 
     def __init__(self, library: Path, rod: SemiDiscrete) -> None:
         self._ffi = ffi = _interface()
-        self._lib: Any = ffi.dlopen(str(library))
+        self._lib = _library(library)
         self._double, self._int = ffi.typeof("double[]"), ffi.typeof("int[]")
         self.size = len(rod.state)
         self.algebraic = rod.algebraic
@@ -101,13 +109,19 @@ class NativeRod:
         self._kept = {name: np.ascontiguousarray(a, dtype=float) for name, a in arrays.items()}
         self._rod = ffi.new("rod *")
         self._rod.elements = self._elements
-        for name, array in self._kept.items():
-            setattr(self._rod, name, ffi.cast("double *", array.ctypes.data))
+        self._point(self._rod, self._kept)
         self._blocks: dict[str, Array] = {}
+        self._blocks_at: tuple[Any, ...] = ()
         self._factors: tuple[Array, Any, Array] | None = None
+        self._functions: Functions | None = None
 
     def _at(self, array: Array) -> Any:
         return self._ffi.from_buffer(self._double, array)
+
+    def _point(self, struct: Any, arrays: Mapping[str, Array]) -> None:
+        """Pointers to the arrays into members of their names; whoever keeps the struct keeps the arrays."""
+        for name, array in arrays.items():
+            setattr(struct, name, self._at(array))
 
     def rate(self, t: float, y: Array, out: Array) -> None:
         self._lib.rod_rate(self._rod, t, self._at(y), self._at(out))
@@ -131,7 +145,13 @@ class NativeRod:
                 "scratch": (lib.rod_scratch(),),
             }
             self._blocks = {name: np.empty(shape) for name, shape in shapes.items()}
+            self._blocks_at = tuple(self._at(a) for a in self._blocks.values())
         return self._blocks
+
+    def _space_at(self) -> tuple[Any, ...]:
+        """The same as C takes it."""
+        self._space()
+        return self._blocks_at
 
     def _room(self) -> tuple[Array, Array, Array]:
         """Room for factors, pivots and solving."""
@@ -141,16 +161,18 @@ class NativeRod:
 
     def functions(self) -> Functions:
         """Rate and dense Jacobian as an integrator takes them that calls C directly."""
-        ffi, lib = self._ffi, self._lib
-        problem = ffi.new("rod_problem *")
-        arrays = self._space() | {"whole": np.empty(self._dense_room())}
-        for name, array in arrays.items():
-            setattr(problem, name, ffi.cast("double *", array.ctypes.data))
-        problem.r, problem.size = self._rod, self.size
-        data, rate, jacobian = (
-            int(ffi.cast("uintptr_t", thing)) for thing in (problem, lib.problem_slope, lib.problem_dense)
-        )
-        return Functions(data, rate, jacobian, ENERGIES, keep=(problem, arrays, self))
+        if self._functions is None:
+            ffi, lib = self._ffi, self._lib
+            problem = ffi.new("rod_problem *")
+            arrays = self._space() | {"whole": np.empty(self._dense_room())}
+            self._point(problem, arrays)
+            problem.r, problem.size = self._rod, self.size
+            data, rate, jacobian = (
+                int(ffi.cast("uintptr_t", thing)) for thing in (problem, lib.problem_slope, lib.problem_dense)
+            )
+            kept = problem, arrays, self._rod, self._kept, lib
+            self._functions = Functions(data, rate, jacobian, ENERGIES, keep=kept)
+        return self._functions
 
     def callbacks(self, vector: int, current: int) -> Callbacks:
         """This kernel as SUNDIALS sees it; vector and current are the addresses of N_VGetArrayPointer, and of
@@ -160,8 +182,7 @@ class NativeRod:
         factors, pivots, solving = self._room()
         arrays = self._space() | {"factors": factors, "solving": solving}
         arrays |= {name: np.empty(self.size) for name in ("right", "at", "next", "rates")}
-        for name, array in arrays.items():
-            setattr(problem, name, ffi.cast("double *", array.ctypes.data))
+        self._point(problem, arrays)
         problem.pivots = ffi.cast("int *", pivots.ctypes.data)
         problem.r, problem.size, problem.ahead = self._rod, self.size, self._quasi_static
         problem.vector, problem.current = ffi.cast("void *", vector), ffi.cast("void *", current)
@@ -196,23 +217,22 @@ class NativeRod:
         return self.size * (self.size + 12)
 
     def jacobian(self, t: float, y: Array) -> Array:
-        space = [self._at(a) for a in self._space().values()]
         J = np.empty(self._dense_room())
-        self._lib.rod_dense(self._rod, t, self._at(y), self._at(J), *space)
+        self._lib.rod_dense(self._rod, t, self._at(y), self._at(J), *self._space_at())
         return J[: self.size**2].reshape(self.size, self.size)
 
     def prepare(self, t: float, y: Array) -> None:
-        self._lib.rod_blocks(self._rod, t, self._at(y), *(self._at(a) for a in self._space().values()))
+        self._lib.rod_blocks(self._rod, t, self._at(y), *self._space_at())
 
     def factor(self, gamma: float) -> None:
         if self._factors is None:
             self._factors = self._room()
         factors, pivots, _ = self._factors
-        *blocks, _ = self._space().values()
+        *blocks, _ = self._space_at()
         failed = self._lib.rod_factor(
             self._elements,
             gamma,
-            *(self._at(a) for a in blocks),
+            *blocks,
             self._at(factors),
             self._ffi.from_buffer(self._int, pivots),
         )

@@ -7,7 +7,7 @@ from importlib import import_module
 
 import numpy as np
 
-from geocosserat.kernel.contract import Array, Kernel, NativeKernel
+from geocosserat.kernel.contract import Array, Kernel, is_native
 from geocosserat.solver.consistent import consistent
 from geocosserat.solver.cvode_native import cvode_native
 from geocosserat.solver.ida_native import ida_native
@@ -45,17 +45,18 @@ def integrate(
     """
     if method not in METHODS:
         raise ValueError(f"expected a method out of {', '.join(METHODS)}, found {method!r}")
-    if not np.all(np.isfinite(start)):
+    if not np.isfinite(start).all():
         raise ValueError("expected a finite initial state, found infinities or NaN; check the start of the scene")
     rate = np.empty_like(start)
     kernel.rate(float(times[0]), start, rate)
-    if not np.all(np.isfinite(rate)):
+    if not np.isfinite(rate).all():
         return Trajectory(times[:1].copy(), start[None].copy(), 1, 0, 0, False, "the rate is not finite at the start")
     try:
-        begun = consistent(kernel, float(times[0]), start, blocks=True)
+        begun = consistent(kernel, float(times[0]), start, blocks=True, gap=rate)
     except np.linalg.LinAlgError:
         return Trajectory(times[:1].copy(), start[None].copy(), 1, 0, 0, False, "the constraints have no solution")
-    tolerance = np.broadcast_to(np.asarray(atol, dtype=float), start.shape).copy()
+    tolerance = np.empty(start.shape)
+    tolerance[:] = atol
     chosen = _chosen(method, kernel)
 
     def piece(y: Array, instants: Array, told: Progress, noted: Frame) -> Trajectory:
@@ -69,12 +70,12 @@ def integrate(
 def _chosen(method: str, kernel: Kernel) -> Integrator:
     """The integrator of that name. SUNDIALS is called directly where kernel and installation allow it: CVODE, or IDA
     where there are constraints. Radau is our own for compiled kernels, scipy's for others."""
-    constrained = bool(np.any(kernel.algebraic))
-    if method == "cvode" and isinstance(kernel, NativeKernel):
+    constrained, native = bool(kernel.algebraic.any()), is_native(type(kernel))
+    if method == "cvode" and native:
         library = sundials("IDA" if constrained else "CVode")
         if library is not None:
             return partial(ida_native if constrained else cvode_native, library)
-    if method == "radau" and isinstance(kernel, NativeKernel) and kernel.size <= LARGEST:
+    if method == "radau" and native and kernel.size <= LARGEST:
         return radau_native
     found = _integrator("cvode", "cvode") if method == "cvode" else _integrator("scipy_methods", method)
     return reduced(found) if constrained else found

@@ -27,7 +27,10 @@ def in_pieces(
     """Integrates from times[0] through all of `times`, anew from each of the `switches` between."""
     first, last = float(times[0]), float(times[-1])
     hair = HAIR * (last - first)
-    edges = [first, *sorted({t for t in switches if first + 2 * hair < t < last - 2 * hair}), last]
+    between = {t for t in switches if first + 2 * hair < t < last - 2 * hair}
+    if not between:
+        return piece(start, times, progress, frame)
+    edges = [first, *sorted(between), last]
     total = Trajectory(times[:1].copy(), start[None].copy(), 0, 0, 0, True)
     state = start
     for a, b in pairwise(edges):

@@ -6,7 +6,8 @@
  * quadratures, which nothing depends on; they are integrated by the same formula and cost no linear algebra.
  *
  * Each step solves for the values at all stages by Newton's method, whose matrix falls apart into a real and (s - 1) / 2
- * complex ones of the size of the system. Constraints are eliminated once for a Jacobian, not for every step size.
+ * complex ones of the size of the system. Constraints are eliminated once for a Jacobian, not for every step size. The
+ * Jacobian is that of the middle of the step, where the last step leads.
  *
  * Source: E. Hairer and G. Wanner, Solving Ordinary Differential Equations II (1996), section IV.8; for the embedded
  * formula and the choice of steps too.
@@ -18,6 +19,7 @@
 
 enum { MOST_STAGES = 7, PAIRS = (MOST_STAGES - 1) / 2 };
 enum { REACHED = 0, PAUSED = 1, STANDSTILL = -1, DIVERGED = -2, NOT_FINITE = -3, SINGULAR = -4 };
+enum { PAST, MIDDLE, NOW }; /* a step before this one; where the middle of this one is foreseen; its start */
 enum { MOST_FAILURES = 60, BREATH = 500 }; /* tries of one step; steps between two looks at the world outside */
 
 /* A Jacobian serves on as long as Newton's method with it leaves less than this of an error in each round. */
@@ -51,16 +53,17 @@ typedef struct radau {
     double share;              /* of Newton's last change that is still to come, as far as is known */
     double contraction;        /* of Newton's method in the last step */
     int finite;                /* whether the last rate was */
-    int current, factored;     /* whether the Jacobian is that of now, and the factors fit it and h */
+    int of;                    /* where the Jacobian is from: PAST, MIDDLE or NOW */
+    int factored;              /* whether the factors fit it and h */
     int *moves, *fixes;        /* which entries those are */
     int *inner_pivots, *pivots[PAIRS + 1];
     double *numbers;           /* room for all that follows */
     double *y, *slope, *atol, *scale; /* the state, its rate, tolerances, one over what an error may be */
     double *Z, *last_Z, *F, *change;  /* [stages][size] displacements, now and in the last step; rates; Newton's change */
     double *trial, *error;
-    double *schur, *coupling, *feed, *inner, *answers, *both; /* of the Jacobian, see `condense` */
-    double *matrix[PAIRS + 1];                                /* factors: a real matrix, then complex ones */
-    double *right, *sides, *found, *room, *picked;            /* of one linear system, see `solve_part` */
+    double *schur, *coupling, *feed, *answers, *both; /* of the Jacobian, see `condense` */
+    double *matrix[PAIRS + 1];                        /* factors: a real matrix, then complex ones */
+    double *right, *sides, *found, *room, *picked;    /* of one linear system, see `solve_part` */
 } radau;
 
 /* The step over the method's eigenvalue, re + i im. */
@@ -209,22 +212,41 @@ static void solve_complex(int n, const double *A, const int *pivots, double *x)
     }
 }
 
-/* y += A x for A [columns][rows]. */
-static void multiply(int rows, int columns, const double *A, const double *x, double *y)
+/* y += A x for A [columns][rows], four columns at a time: y is then read and written a quarter as often. */
+static void multiply(int rows, int columns, const double *A, const double *x, double *restrict y)
 {
-    for (int j = 0; j < columns; ++j)
+    int j = 0;
+    for (; j + 4 <= columns; j += 4) {
+        const double *restrict a = A + (size_t)j * rows, *restrict b = a + rows, *restrict c = b + rows;
+        const double *restrict d = c + rows;
+        const double f = x[j], g = x[j + 1], h = x[j + 2], k = x[j + 3];
+        for (int i = 0; i < rows; ++i)
+            y[i] += f * a[i] + g * b[i] + h * c[i] + k * d[i];
+    }
+    for (; j < columns; ++j)
         subtract(rows, -x[j], A + (size_t)j * rows, y);
 }
 
+/* The Jacobian by rows. That of the middle of the step is nearer to those of its stages than that of its start. */
+static const double *linearise(radau *r, int where)
+{
+    const int middle = r->m.stages / 2;
+    r->jacobians += 1;
+    r->factored = 0;
+    r->of = where;
+    if (where == NOW)
+        return r->jacobian(r->data, r->t, r->y);
+    for (int i = 0; i < r->size; ++i)
+        r->trial[i] = r->y[i] + r->Z[middle * r->size + i];
+    return r->jacobian(r->data, r->t + r->m.node[middle] * r->h, r->trial);
+}
+
 /* What the Jacobian says of what moves, once the constraints are solved for. With J = [[M, C], [K, N]], K and N of the
- * constraints: inner = 1 / N, feed = C / N, answers = N \ K, schur = M - C N \ K. Returns 1 if they cannot be. */
-static int condense(radau *r)
+ * constraints: feed = C / N above 1 / N, answers = -N \ K, schur = M - C N \ K. Returns 1 if they cannot be. */
+static int condense(radau *r, int where)
 {
     const int n = r->size, d = r->moving, a = r->fixed;
-    const double *J = r->jacobian(r->data, r->t, r->y);
-    r->jacobians += 1;
-    r->current = 1;
-    r->factored = 0;
+    const double *J = linearise(r, where);
     for (int i = 0; i < d; ++i) {
         const double *row = J + (size_t)r->moves[i] * n;
         for (int j = 0; j < d; ++j)
@@ -247,19 +269,26 @@ static int condense(radau *r)
     if (factor(a, N, r->inner_pivots))
         return 1;
     solve_rows(a, N, r->inner_pivots, d + a, both);
+    memset(r->feed, 0, (size_t)a * (d + a) * sizeof *r->feed);
     for (int i = 0; i < a; ++i) {
         for (int j = 0; j < d; ++j)
             r->answers[j * a + i] = both[i * (d + a) + j];
         for (int j = 0; j < a; ++j)
-            r->inner[j * a + i] = both[i * (d + a) + d + j];
+            r->feed[j * (d + a) + d + i] = both[i * (d + a) + d + j];
     }
-    memset(r->feed, 0, (size_t)a * d * sizeof *r->feed);
     for (int j = 0; j < a; ++j)
-        multiply(d, a, r->coupling, r->inner + j * a, r->feed + j * d);
+        multiply(d, a, r->coupling, r->feed + j * (d + a) + d, r->feed + j * (d + a));
+    for (int i = 0; i < a * d; ++i)
+        r->answers[i] = -r->answers[i];
     for (int j = 0; j < d; ++j)
-        for (int i = 0; i < a; ++i)
-            subtract(d, r->answers[j * a + i], r->coupling + i * d, r->schur + j * d);
+        multiply(d, a, r->coupling, r->answers + j * a, r->schur + j * d);
     return 0;
+}
+
+/* A new Jacobian: of the middle of the step if that is wanted and can be, else of its start. */
+static int renew(radau *r, int where)
+{
+    return !(where == MIDDLE && r->last_h > 0.0 && !condense(r, MIDDLE)) && condense(r, NOW);
 }
 
 /* Factors  1 - g schur  for each g = h / eigenvalue. Returns 1 if one is singular. */
@@ -286,16 +315,16 @@ static int factor_all(radau *r)
 static void solve_part(radau *r, int k)
 {
     const int d = r->moving, a = r->fixed, parts = k ? 2 : 1;
-    double *x = r->right, *room = r->room, re, im;
+    double *x = r->right, *room = r->room, re, im; /* room: [d + a], by parts */
     share_of(r, k, &re, &im);
     if (a) {
-        memset(room, 0, parts * d * sizeof *room);
+        memset(room, 0, parts * (d + a) * sizeof *room);
         for (int part = 0; part < parts; ++part)
-            multiply(d, a, r->feed, r->sides + part * a, room + part * d);
+            multiply(d + a, a, r->feed, r->sides + part * a, room + part * (d + a));
         for (int i = 0; i < d; ++i) {
-            x[i] += re * room[i] - (k ? im * room[d + i] : 0.0);
+            x[i] += re * room[i] - (k ? im * room[d + a + i] : 0.0);
             if (k)
-                x[d + i] += re * room[d + i] + im * room[i];
+                x[d + i] += re * room[d + a + i] + im * room[i];
         }
     }
     if (k)
@@ -304,11 +333,8 @@ static void solve_part(radau *r, int k)
         solve(d, r->matrix[0], r->pivots[0], x);
     for (int part = 0; part < parts && a; ++part) {
         double *z = r->found + part * a;
-        memset(room, 0, a * sizeof *room);
-        multiply(a, d, r->answers, x + part * d, room);
-        memset(z, 0, a * sizeof *z);
-        multiply(a, a, r->inner, r->sides + part * a, z);
-        subtract(a, 1.0, room, z);
+        memcpy(z, room + part * (d + a) + d, a * sizeof *z);
+        multiply(a, d, r->answers, x + part * d, z);
     }
 }
 
@@ -435,7 +461,6 @@ static int solve_stages(radau *r, double *shrink)
     const double floor = fmin(0.3, 100.0 * DBL_EPSILON / r->rtol), enough = fmax(floor, fmin(0.03, sqrt(r->rtol)));
     double before = 0.0, theta = 0.0, share = fmax(UNSEEN, pow(r->share, 0.8));
     *shrink = 0.5;
-    predict(r);
     for (int round = 1; round <= most; ++round) {
         if (!evaluate_stages(r))
             return 0;
@@ -531,7 +556,7 @@ static void accept(radau *r, double error)
     r->Z = swap;
     r->last_h = r->h;
     r->last_error = fmax(1e-2, error);
-    r->current = 0;
+    r->of = PAST;
     rescale(r);
 }
 
@@ -541,6 +566,7 @@ static int step(radau *r)
     const int most = 7 + 2 * (r->m.stages - 3);
     const double power = -1.0 / (r->m.stages + 1);
     int trouble = STANDSTILL; /* what made the step shorter */
+    int doubt = r->contraction > RENEW ? MIDDLE : PAST; /* a Jacobian from before that will not do */
     for (int failures = 0; failures < MOST_FAILURES; ++failures) {
         const double left = r->end - r->t;
         const int last = r->h >= left;
@@ -550,9 +576,11 @@ static int step(radau *r)
             change_step(r, 0.5 * left); /* two steps alike, not a long and a tiny one */
         if (!(r->h > 8.0 * DBL_EPSILON * fabs(r->t)) || !(r->h > DBL_MIN))
             return trouble;
-        if (!r->current && (failures || r->contraction > RENEW) && condense(r))
+        predict(r);
+        if (doubt > r->of && renew(r, doubt))
             return SINGULAR;
         if (!r->factored && factor_all(r)) {
+            doubt = NOW; /* what was foreseen may be far off */
             change_step(r, 0.5 * r->h);
             continue;
         }
@@ -562,6 +590,7 @@ static int step(radau *r)
         const int rounds = solve_stages(r, &shrink);
         if (!rounds) {
             trouble = r->finite ? DIVERGED : NOT_FINITE;
+            doubt = NOW;
             change_step(r, shrink * r->h);
             continue;
         }
@@ -570,6 +599,7 @@ static int step(radau *r)
         double factor_h = fmin(8.0, fmax(0.2, safety * pow(fmax(error, 1e-10), power)));
         if (!(error < 1.0)) {
             trouble = STANDSTILL;
+            doubt = doubt > MIDDLE ? doubt : MIDDLE;
             change_step(r, (r->last_h > 0.0 ? factor_h : 0.1) * r->h);
             continue;
         }
@@ -594,8 +624,8 @@ static int make_room(radau *r)
     struct { double **array; size_t count; } rooms[] = {
         {&r->y, n}, {&r->slope, n}, {&r->atol, n}, {&r->scale, n}, {&r->trial, n}, {&r->error, n}, {&r->picked, 4 * n},
         {&r->Z, S * n}, {&r->last_Z, S * n}, {&r->F, S * n}, {&r->change, S * n},
-        {&r->schur, d * d}, {&r->coupling, d * a}, {&r->feed, d * a}, {&r->answers, a * d}, {&r->inner, a * a}, {&r->both, a * (d + a)},
-        {&r->right, 2 * d}, {&r->sides, 2 * a}, {&r->found, 2 * a}, {&r->room, 2 * most},
+        {&r->schur, d * d}, {&r->coupling, d * a}, {&r->feed, a * (d + a)}, {&r->answers, a * d}, {&r->both, a * (d + a)},
+        {&r->right, 2 * d}, {&r->sides, 2 * a}, {&r->found, 2 * a}, {&r->room, 2 * (d + a)},
         {&r->matrix[0], most * most}, {&r->matrix[1], 2 * d * d}, {&r->matrix[2], 2 * d * d}, {&r->matrix[3], 2 * d * d},
     };
     size_t total = 0;

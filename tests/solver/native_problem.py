@@ -17,14 +17,15 @@ STRUCT = """
 typedef struct {
     void *memory;
     int size, calls;
-    double bad, latest, gamma, *rates, *at, *matrix;
+    double bad, latest, gamma, wrong, last, *rates, *at, *matrix;
     double *(*vector)(void *);
 } problem;
 """
 SOURCE = rf"""
 #include <math.h>
 {STRUCT}
-/* What Radau IIA takes: the rate and the Jacobian by rows, which stands in `matrix`. */
+/* What Radau IIA takes: the rate and the Jacobian by rows, which stands in `matrix`. Where it is to be
+ * wrong by a factor, it also is NaN at other instants than the last one of a rate. */
 int slope(void *data, double t, const double *x, double *r)
 {{
     problem *p = data;
@@ -32,6 +33,7 @@ int slope(void *data, double t, const double *x, double *r)
         r[i] = -p->rates[i] * (x[i] - cos(t));
     p->calls += 1;
     p->latest = fmax(p->latest, t);
+    p->last = t;
     if (t > p->bad)
         r[p->size - 1] = NAN;
     return 0;
@@ -39,8 +41,9 @@ int slope(void *data, double t, const double *x, double *r)
 const double *matrix(void *data, double t, const double *x)
 {{
     problem *p = data;
+    const double factor = p->wrong == 0.0 ? 1.0 : t == p->last ? p->wrong : NAN;
     for (int i = 0; i < p->size * p->size; ++i)
-        p->matrix[i] = i % (p->size + 1) ? 0.0 : -p->rates[i / p->size];
+        p->matrix[i] = i % (p->size + 1) ? 0.0 : -factor * p->rates[i / p->size];
     return p->matrix;
 }}
 /* From the instant `bad` on the last rate is NaN, and said to be so. */

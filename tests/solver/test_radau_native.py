@@ -96,6 +96,16 @@ def test_a_problem_with_constraints_is_solved_to_its_tolerance(library: Path, rt
     np.testing.assert_allclose(found.states[1:, size:] - np.cos(TIMES[1:])[:, None], 0.0, atol=10 * rtol)
 
 
+def test_a_jacobian_that_cannot_be_foreseen_is_taken_where_it_is_known(library: Path) -> None:
+    """The middle of a step may lie where there is none; the start of the step serves as well."""
+    problem = NativeForced(library, 7)
+    problem.problem.wrong = 1.3  # else one Jacobian would do for the whole run
+    found = integrate(problem, np.full(7, 2.0), TIMES, "radau", 1e-6, 1e-6)
+    assert found.reached
+    assert found.jacobians > 0.2 * found.steps
+    np.testing.assert_allclose(found.states, forced_solution(7, TIMES, 2.0), atol=1e-5)
+
+
 def test_more_stages_take_fewer_steps(library: Path) -> None:
     """At a tight tolerance; that is what they are for."""
 
