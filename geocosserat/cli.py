@@ -4,6 +4,7 @@ Exit codes: 0 done; 1 the answer is no; 2 the input is wrong (one message); 3 un
 """
 
 import json
+import math
 import os
 import sys
 from collections.abc import Callable, Mapping
@@ -14,6 +15,7 @@ from typing import Any
 import click
 from rich.console import Console
 
+from geocosserat.conductor import check as check_law
 from geocosserat.conductor import derive as derive_equations
 from geocosserat.conductor import generate as generate_kernels
 from geocosserat.conductor import paper as review_paper
@@ -136,6 +138,43 @@ def generate(scene: str, backend: str, out: str, settings: tuple[str, ...], over
         click.echo(path)
     how = f"make -C {out} && {out}/driver" if backend == "c" else f"python {out}/driver.py"
     click.echo(f"try it: {how}")
+
+
+@main.command()
+@click.argument("law", type=click.Path())
+@click.option("--out", type=click.Path(), help="Folder for witnesses that run, a picture and a passage for a paper.")
+@click.option("--set", "settings", metavar="NAME=VALUE", multiple=True, help="A value of a parameter, e.g. a=0.3.")
+@OVERWRITE
+@JSON
+@_one_message
+def check(law: str, out: str | None, settings: tuple[str, ...], overwrite: bool, as_json: bool) -> None:
+    """Is the constitutive law in LAW (a TOML file) passive? With a proof, or a counter-example that runs."""
+    try:
+        result = check_law(law, out, values=dict(map(_value, settings)), overwrite=overwrite)
+    except KeyboardInterrupt:
+        click.echo("geocosserat: interrupted", err=True)
+        sys.exit(NOT_REACHED)
+    if as_json:
+        _print_json(result.fields)
+    elif result.found is None:
+        click.echo(f"{result.name}: undecided; not checked: {'; '.join(result.not_checked)}")
+    else:
+        from geocosserat.passivity.show import print_check
+
+        print_check(result.found, Console(), [str(file) for file in result.files])
+    if result.verdict != "passive":
+        sys.exit(NOT_REACHED if result.verdict == "undecided" else NO)
+
+
+def _value(setting: str) -> tuple[str, float]:
+    name, equals, text = setting.partition("=")
+    try:
+        value = float(text)
+    except ValueError:
+        value = float("nan")
+    if not equals or not name.strip() or not math.isfinite(value):
+        raise InputError("NAME=VALUE with a finite number", repr(setting), "write for example a=0.3", key="--set")
+    return name.strip(), value
 
 
 @main.command()

@@ -12,18 +12,22 @@ import os
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from geocosserat.accuracy import Setting
+from geocosserat.bounded import OutOfBounds, bounded
 from geocosserat.codegen.identity import identity
 from geocosserat.discretisation.semidiscrete import discretise
 from geocosserat.discretisation.structure import RodStructure
 from geocosserat.discretisation.structuring import structure_of
 from geocosserat.kernel.compile import CompileError, compiler
 from geocosserat.kernel.library import KernelText, find, store
+from geocosserat.model.effects.law_wrench import LawWrench
 from geocosserat.model.errors import InputError
+from geocosserat.model.law import Law, load_law
 from geocosserat.model.records import Scene
 from geocosserat.model.scene import load_scene
 from geocosserat.results.atomic import write_bytes
@@ -36,10 +40,15 @@ from geocosserat.simulation import Attempt, Clock, Simulation, chosen_setting, s
 from geocosserat.version import VERSION
 
 if TYPE_CHECKING:
+    from geocosserat.passivity.check import Check
     from geocosserat.referee.report import Report
 
 SceneLike = str | os.PathLike[str] | Mapping[str, Any] | Scene
+LawLike = str | os.PathLike[str] | Mapping[str, Any] | Law
 SOLUTION, PICTURE, SUMMARY = "solution.nc", "picture.png", "summary.json"
+LAW_PICTURE, PASSAGE, FINDINGS = "law.png", "law.tex", "check.json"
+MOST_SECONDS = 30.0
+"""What the question whether a law is passive may take; it is undecided then."""
 
 
 @dataclass(frozen=True)
@@ -62,8 +71,20 @@ def load_any(scene: SceneLike, settings: Sequence[str] = ()) -> Scene:
     Raises InputError as `load_scene`.
     """
     if isinstance(scene, Scene):
-        return load_scene(scene.source, settings) if settings else scene
-    return load_scene(scene, settings)
+        return _stored(load_scene(scene.source, settings) if settings else scene)
+    return _stored(load_scene(scene, settings))
+
+
+def _stored(scene: Scene) -> Scene:
+    """The scene, with what is found of the energy and the potential of a law that is written as stress and wrench."""
+    model = scene.model
+    if not (model.law and model.law.energy is None) and not any(isinstance(e, LawWrench) for e in model.effects):
+        return scene
+    from geocosserat.passivity.storing import stored
+
+    with suppress(OutOfBounds):  # then all that the law does counts as lost
+        model = bounded(partial(stored, model), MOST_SECONDS)
+    return replace(scene, model=model)
 
 
 def kernel_text(structure: RodStructure) -> KernelText:
@@ -161,12 +182,29 @@ def run(
         keeper.save()
         raise
     solution = solution_of(read, attempt, estimate, clock)
+    if read.model.law is not None:
+        solution = replace(solution, contents={**solution.contents, "law": _said_of(read.model.law)})
     files: list[Path] = []
     if folder is not None:
         files = [folder / SOLUTION, folder / PICTURE, folder / SUMMARY]
         _write(solution, files, summary(solution, files, scene=read.path))
         keeper.finish()
     return Run(solution, summary(solution, files, scene=read.path))
+
+
+def _said_of(law: Law) -> dict[str, Any]:
+    """Name, verdict and grade of a rod's law; says so where it may feed the rod."""
+    from geocosserat.passivity.check import check as check_law
+
+    with suppress(OutOfBounds):
+        found = bounded(partial(check_law, law, brief=True), MOST_SECONDS)
+        if found.verdict != "passive":
+            _tell(
+                f"the law {law.name} is {found.verdict}: "
+                "the rod may gain energy from it, and no method can promise that energy only falls"
+            )
+        return {"name": law.name, "verdict": found.verdict, "grade": found.grade}
+    return {"name": law.name, "verdict": "undecided", "grade": None}
 
 
 def _simulate(scene: Scene, backend: str, clock: Clock, keeper: Keeper) -> tuple[Attempt, float | None]:
@@ -286,6 +324,75 @@ def generate(
     for name, content in files.items():
         write_bytes(folder / name, content.encode())
     return Generated(backend, tuple(folder / name for name in files), json.loads(files["signature.json"]))
+
+
+@dataclass(frozen=True)
+class Checked:
+    """What `check` returns: all that was found of a law, and the fields of ``check --json`` as attributes.
+
+    found: None if it took too long; files: those written.
+    """
+
+    found: "Check | None"
+    files: tuple[Path, ...]
+    fields: Mapping[str, Any]
+
+    def __getattr__(self, name: str) -> Any:
+        fields = self.__dict__.get("fields", {})  # empty while a copy is being made
+        if name in fields:
+            return fields[name]
+        raise AttributeError(f"a check has no field {name!r}; it has {', '.join(fields)}")
+
+
+def check(
+    law: LawLike,
+    out: str | os.PathLike[str] | None = None,
+    *,
+    values: Mapping[str, float] | None = None,
+    overwrite: bool = False,
+    seconds: float = MOST_SECONDS,
+) -> Checked:
+    """Is a constitutive law passive? With a proof, or with a counter-example that runs.
+
+    law: a path, TOML text, a mapping or a Law. values: of its parameters. `out`: a folder for the witnesses as scenes,
+    a picture, a passage for a paper and what was found as JSON. Takes at most `seconds`; then it is undecided.
+
+    Raises InputError for a wrong law or folder.
+    """
+    from geocosserat.passivity.check import check as check_law
+
+    read = law if isinstance(law, Law) else load_law(law, values)
+    for name in values or ():
+        if name not in read.parameters:
+            known = ", ".join((*read.parameters, *read.open)) or "none"
+            raise InputError(f"a parameter of the law ({known})", repr(name), "choose one of these", key="--set")
+    folder = None if out is None else Path(out)
+    if folder is not None:
+        witnesses = ("witness_stress.toml", "witness_wrench.toml")
+        _claim(folder, overwrite, (*witnesses, LAW_PICTURE, PASSAGE, FINDINGS))
+    try:
+        found = bounded(partial(check_law, read), seconds)
+    except OutOfBounds as error:
+        if folder is not None:
+            _give_back(folder)
+        why = {"verdict": "undecided", "grade": None, "conditions": [], "not_checked": [f"all: {error}"]}
+        return Checked(None, (), {"law": read.path or read.name, "name": read.name, **why, "files": []})
+    files = () if folder is None else _write_check(found, folder)
+    return Checked(found, files, {**found.fields, "files": [str(file) for file in files]})
+
+
+def _write_check(found: "Check", folder: Path) -> tuple[Path, ...]:
+    from geocosserat.passivity.picture import image
+    from geocosserat.passivity.portrait import portrait
+    from geocosserat.passivity.show import passage
+
+    content = {f"witness_{part}.toml": text.encode() for part, text in found.scenes.items()}
+    content[PASSAGE] = passage(found).encode()
+    content[FINDINGS] = (json.dumps(found.fields, indent=2, allow_nan=False) + "\n").encode()
+    figure = portrait(found)
+    if figure is not None:
+        content[LAW_PICTURE] = image(figure, Path(LAW_PICTURE).suffix)
+    return tuple(write_bytes(folder / name, data) for name, data in content.items())
 
 
 def paper(progress: Callable[[int, int], None] | None = None, processes: int = 1) -> "Report":

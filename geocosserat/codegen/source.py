@@ -62,6 +62,7 @@ def _tapes(p: Pointwise) -> dict[str, Tape]:
         "advection": record(p.advection),
         "bracket": record(p.bracket),
         "surroundings": record(p.surroundings, prefix="w"),
+        "own": record(p.own, prefix="w"),
         "surroundings_tangent": _seen_tangent(p.group, p.surroundings),
         "load_left": record(p.loads[0], prefix="l"),
         "load_right": record(p.loads[1], prefix="l"),

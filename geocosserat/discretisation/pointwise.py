@@ -42,6 +42,7 @@ class Pointwise:
     advection: advection_i_j = d rate_i / d state_j at fixed twist, in terms of value_i
     bracket: ad_i_j, the matrix of ad_E
     surroundings: wrench_i and medium_i (not the zeros), in terms of coefficients and what is seen
+    own: own_i, the part of the wrench whose work is a loss of the rod (not the zeros), likewise
     loads, twists: load_i and twist_i of the left and of the right end, likewise
     pose: position and angle, or position and quaternion, of a carried frame
     carry: rate_i of the pose, from the twist (components v1, ... in the moving frame)
@@ -62,6 +63,7 @@ class Pointwise:
     advection: Named
     bracket: Named
     surroundings: Named
+    own: Named
     loads: tuple[Named, Named]
     twists: tuple[Named, Named]
     pose: tuple[sp.Symbol, ...]
@@ -158,6 +160,7 @@ def pointwise(structure: RodStructure) -> Pointwise:
         advection=_named("advection", advection),
         bracket=_named("ad", ad),
         surroundings={**_formulas("wrench", structure.wrench), **_formulas("medium", structure.medium)},
+        own=_formulas("own", structure.own),
         loads=(_formulas("load", structure.left.load), _formulas("load", structure.right.load)),
         twists=(_formulas("twist", structure.left.twist), _formulas("twist", structure.right.twist)),
         pose=pose,

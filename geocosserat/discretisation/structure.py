@@ -79,6 +79,7 @@ class RodStructure:
     frozen (d): the modes held at their reference; their stress takes their place in the state.
     stiffness, mobility (d, d) and reference, reference_rate (d): names of coefficients, or "0", or "1".
     law: instead of the stiffness; reference is then that of frozen modes alone.
+    own: the part of the wrench whose work is a loss of the rod, less than nothing, d formulas; empty if there is none.
     wrench, medium (d): density of wrench, and twist of the medium, in the moving frame: formulas of coefficients and
     of what is seen. base: the end that poses are marched from. Where it moves, its pose is part of the state (carried),
     unless it is driven: that pose follows from the time alone (prescribed).
@@ -99,6 +100,7 @@ class RodStructure:
     moving_base: bool
     coefficients: tuple[Coefficient, ...]
     law: LawStructure | None = None
+    own: Formulas = ()
 
     @property
     def group(self) -> Group:
@@ -190,6 +192,7 @@ class RodStructure:
             "base": self.base,
             "moving_base": self.moving_base,
             "law": self.law.describe() if self.law else None,
+            "own": [to_text(e) for e in self.own],
             "coefficients": [
                 [c.name, c.place, to_text(c.expression) if c.timed and c.expression else ""] for c in self.coefficients
             ],

@@ -18,6 +18,7 @@ from geocosserat.discretisation.structure import (
     present,
 )
 from geocosserat.model.effects.effect import Effect, together
+from geocosserat.model.effects.law_wrench import LawWrench
 from geocosserat.model.expressions import (
     Binary,
     Call,
@@ -290,7 +291,10 @@ def structure_of(model: RodModel) -> RodStructure:
     mobility = _mobility(names, model.friction)
     frame = seen(group.space)
     effects = _named_effects(names, model.effects)
-    wrench = together(((*force, *moment) for force, moment in (e.wrench(frame) for e in effects)), group.dimension)
+    pushes = [sum(effect.wrench(frame), ()) for effect in effects]
+    wrench = together(pushes, group.dimension)
+    gives = [isinstance(effect, LawWrench) and effect.gives for effect in effects]
+    own = together((push for push, mine in zip(pushes, gives, strict=True) if mine), group.dimension)
     medium = together(((*flow, *spin) for flow, spin in (e.medium(frame) for e in effects)), group.dimension)
     sides = (("left", model.left), ("right", model.right))
     left, right = (_end(names, side, end, model, present(medium)) for side, end in sides)
@@ -320,4 +324,5 @@ def structure_of(model: RodModel) -> RodStructure:
         moving_base=(left if base == "left" else right).kind != "clamped",
         coefficients=tuple(names.found.values()),
         law=law,
+        own=own if present(own) else (),
     )

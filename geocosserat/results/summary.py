@@ -65,6 +65,7 @@ def print_summary(solution: Solution, console: Console, files: Iterable[str | os
     rows = [
         ("rod", f"{fields['motion']}, {fields['unknowns']} unknowns "
                 f"({_count(fields['elements'], 'element')} of degree {fields['degree']})"),
+        *(("law", _law(law)) for law in [fields["contents"].get("law")] if law),
         ("time", _time(fields)),
         ("tip", _place(fields["tip"])),
         ("base", _place(fields["base"])),
@@ -82,6 +83,10 @@ def print_summary(solution: Solution, console: Console, files: Iterable[str | os
         grid.add_row(Text(name, style="dim"), Text(value, overflow="fold"))
     console.print(Text(fields["title"], style="bold"))
     console.print(grid)
+
+
+def _law(law: Mapping[str, Any]) -> str:
+    return f"{law['name']}: {law['verdict']}" + (f", {law['grade']}" if law["grade"] else "")
 
 
 def _end(solution: Solution, node: int) -> dict[str, Any]:

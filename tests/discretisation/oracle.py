@@ -538,6 +538,20 @@ class Rod:
             load[:, node] = np.concatenate([turn @ force, turn @ torque])
         return load, self.gather(wrenches) / self.mass, self.gather(media) / self.mass
 
+    def wrench_given(self, t: Any, E: Array, y: Array) -> Array:
+        """(6, N) the density of wrench of a law, whose work is a loss of the rod."""
+        _, _, moved = self.unpack(t, y)
+        R, r = self.poses(E, moved)
+        local = []
+        for e, places in enumerate(self.u_local):
+            wrench = zeros(6, self.p + 1)
+            for k, u in enumerate(places):
+                for effect in self.model.effects:
+                    if effect.kind == "law":
+                        wrench[:, k] += self.acting(effect, {"u": u, "t": t}, R[e * self.p + k], r[e * self.p + k])[0]
+            local.append(wrench * self.table.masses)
+        return self.gather(local) / self.mass
+
     def homing(self, t: Any, node: int, R: Array, r: Array) -> Array:
         """The twist by which an end that is held far from where poses are marched from goes back to its place, by as
         much as it strayed: a correction, no motion through the medium."""
@@ -619,7 +633,9 @@ class Rod:
             rates[i] = rates[i] - moving[i] - self.slack[i] * S[i]
         nodes = slice(0, self.N - 1 if self.model.joined else self.N)
         lost = -(self.mass * m.drag * m.slip).sum(axis=0)[nodes].sum()
-        worked = (self.mass * (m.wrench * V + m.drag * m.medium) + m.load * V).sum(axis=0)[nodes].sum()
+        own = (self.mass * self.wrench_given(MP.mpf(t), m.turn[self.kept], y) * V).sum(axis=0)[nodes].sum()
+        lost -= own
+        worked = (self.mass * (m.wrench * V + m.drag * m.medium) + m.load * V).sum(axis=0)[nodes].sum() - own
         for n, end in self.ends:
             if end.kind != "free":  # whatever holds it does the work that is missing from the balance
                 worked -= (m.force + m.load + self.mass * m.wrench)[:, n] @ V[:, n]

@@ -25,6 +25,8 @@ STAGES = {
     "results": ("algebra.groups", "model.errors", "kernel.contract", "solver.trajectory"),
     "accuracy": ("discretisation.mesh", "model"),  # the conductor's plan
     "referee": ("algebra",),  # judges statements about rods; knows no paper
+    "bounded": (),  # work in a process of its own
+    "passivity": ("algebra", "model", "derivation.convert", "derivation.notation", "referee.decide"),  # judges laws
 }
 BASE = ("version", "shipped")  # free to all; import nothing of the package
 SEE_ALL = ("", "__main__", "cli", "conductor", "simulation")  # "" is geocosserat/__init__.py
@@ -34,23 +36,27 @@ LIBRARIES = {
     # library: the stages and modules that may import it
     "cffi": ("kernel", "solver"),
     "click": ("cli",),
+    "flint": ("passivity",),
     "h5netcdf": ("results",),
     "h5py": ("results",),
     "jinja2": ("codegen", "referee.page"),
     "latex2mathml": ("referee.mathml",),
     "markupsafe": ("referee.page",),
-    "matplotlib": ("results",),
+    "matplotlib": ("results", "passivity.picture", "passivity.portrait"),
     "mpl_toolkits": ("results",),
     "mpmath": ("algebra.symbolic", "derivation", "referee.decide"),
     "numpy": EVERYWHERE,
     "paper_checks": ("conductor", "cli"),  # no library, but what is checked: nothing else may depend on it
-    "rich": ("results", "conductor", "cli", "referee.show"),
+    "rich": ("results", "conductor", "cli", "referee.show", "passivity.show"),
     "scipy": EVERYWHERE,
     "sksundae": ("solver",),
-    "sympy": ("algebra.symbolic", "algebra.fields", "derivation", "discretisation.pointwise", "codegen", "referee"),
+    "sympy": (
+        "algebra.symbolic", "algebra.fields", "derivation", "discretisation.material", "discretisation.pointwise",
+        "codegen", "referee", "passivity",
+    ),
     "xarray": ("results",),
 }
-DISTRIBUTION = {"mpl_toolkits": "matplotlib", "sksundae": "scikit-sundae"}
+DISTRIBUTION = {"flint": "python-flint", "mpl_toolkits": "matplotlib", "sksundae": "scikit-sundae"}
 LATE = {
     # who may import inside a function, and what
     "conductor": EVERYWHERE,

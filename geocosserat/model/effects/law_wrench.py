@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from geocosserat.model.describe import vector_text
 from geocosserat.model.effects.effect import Effect, Pair
@@ -24,7 +24,11 @@ ANGLE = "theta"
 
 @dataclass(frozen=True, slots=True)
 class LawWrench(Effect):
-    """``components``: in the moving frame, of what is seen and of ``names``; ``given``: what these stand for."""
+    """``components``: in the moving frame, of what is seen and of ``names``; ``given``: what these stand for.
+
+    ``law``: where it is from. ``gives``: whether it may feed the rod; what it does then counts as a loss of the rod's
+    own, less than nothing, and not as the work of the world.
+    """
 
     kind = "law"
     keys = {}  # noqa: RUF012
@@ -32,6 +36,8 @@ class LawWrench(Effect):
     components: Vector
     names: tuple[str, ...]
     given: Vector
+    law: Law
+    gives: bool = True
 
     def wrench(self, seen: Seen) -> Pair:
         values = dict(zip(self.names, self.given, strict=True))
@@ -42,8 +48,7 @@ class LawWrench(Effect):
         return {"given": self.given}
 
     def renamed(self, name: Callable[[str, int, Expression], Expression]) -> Effect:
-        given = tuple(name("given", i, e) for i, e in enumerate(self.given))
-        return LawWrench(self.components, self.names, given)
+        return replace(self, given=tuple(name("given", i, e) for i, e in enumerate(self.given)))
 
     def __str__(self) -> str:
         return f"wrench {vector_text(self.components)} of the law"
@@ -56,7 +61,7 @@ def law_wrench(law: Law) -> LawWrench:
     components = tuple(_in_sight(e, _seen(law, frame), frame) for e in law.wrench)
     known = {s for vector in (*frame.axes, frame.position) for e in vector for s in symbols(e)}
     names = tuple(sorted({s for e in components for s in symbols(e)} - known))
-    return LawWrench(components, names, tuple(Symbol(name) for name in names))
+    return LawWrench(components, names, tuple(Symbol(name) for name in names), law)
 
 
 def _seen(law: Law, frame: Seen) -> dict[str, Expression]:

@@ -1,0 +1,117 @@
+"""What happens where a stress steps: a loop across the step at two places may do net work.
+
+A bounded stress that is curl-free on both sides of a surface p = 0 has a potential across it exactly if its jump is
+normal to the surface, jump_i dp/dE_j = jump_j dp/dE_i: then the jump of the potential is constant along the surface.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+
+import sympy as sp
+
+from geocosserat.passivity.normal import normal_forms
+from geocosserat.passivity.polynomials import NoForm
+from geocosserat.passivity.ranges import Range, sign_on
+from geocosserat.passivity.readable import to_expression
+
+_PARTS = (sp.Abs, sp.sign, sp.Heaviside)
+
+
+@dataclass(frozen=True)
+class Steps:
+    """surfaces: expressions that vanish where the stress or its slope steps. workless: whether all jumps are normal
+    to their surfaces; None if that was not decided. how: in words."""
+
+    surfaces: tuple[sp.Expr, ...]
+    workless: bool | None
+    how: str
+
+
+def steps_of(
+    stress: Sequence[sp.Expr], strain: Sequence[sp.Symbol], positive: Collection[str], box: Mapping[str, Range]
+) -> Steps:
+    """The surfaces of steps and kinks within a box, and whether the steps do no work."""
+    names = set(strain)
+    written = any(part.free_symbols & names for e in stress for part in e.atoms(*_PARTS))
+    try:
+        tower, forms = normal_forms(stress, positive)
+    except NoForm:
+        if written:
+            return Steps((), None, "the steps were not separated: no normal form was found")
+        return Steps((), True, "no steps are written")
+    moduli = [m.args[0] for m in tower.meaning if isinstance(m, sp.Abs) and m.free_symbols & names]
+    surfaces = [p for p in moduli if not _outside(p, box)]
+    if not surfaces:
+        return Steps((), True, "no steps")
+    plain = [tower.expression(top) / tower.expression(bottom) for top, bottom in forms]
+    for p in surfaces:
+        if (fault := _fault(plain, p, strain, positive)) is not None:
+            return Steps(tuple(surfaces), None if fault.startswith("not") else False, f"at {p} = 0: {fault}")
+    count = f"{len(surfaces)} surface{'s' if len(surfaces) > 1 else ''}"
+    how = f"the jumps are normal to {count}, by normal forms divided by what vanishes there"
+    return Steps(tuple(surfaces), True, how)
+
+
+def _outside(p: sp.Expr, box: Mapping[str, Range]) -> bool:
+    e = to_expression(p)
+    return e is not None and sign_on(e, box) != 0
+
+
+def _fault(
+    stress: Sequence[sp.Expr], p: sp.Expr, strain: Sequence[sp.Symbol], positive: Collection[str]
+) -> str | None:
+    """What is wrong with the jump across p = 0; None if it is normal."""
+    modulus = {part: part.args[0] for e in stress for part in e.atoms(sp.Abs) if part.args[0] in (p, -p)}
+    above = [e.xreplace({part: p for part in modulus}) for e in stress]
+    below = [e.xreplace({part: -p for part in modulus}) for e in stress]
+    jump = [a - b for a, b in zip(above, below, strict=True)]
+    normal = [sp.diff(p, x) for x in strain]
+    entries = [
+        jump[i] * normal[j] - jump[j] * normal[i]
+        for i in range(len(strain))
+        for j in range(i)
+        if (normal[i] != 0 or normal[j] != 0)
+    ]
+    try:
+        # both sides at once: nothing may be taken to be above zero on one of them
+        tower, forms = normal_forms([p, *entries], positive, noting=False)
+    except NoForm:
+        return "not decided: no normal form of the jump"
+    if not modulus or any(isinstance(m, sp.Abs) and m.args[0] in (p, -p) for m in tower.meaning):
+        return "not decided: the sides were not told apart"
+    # a component along the normal may be unbounded: a wall, or an energy that is steep there
+    surface = forms[0][0]
+    for top, bottom in forms[1:]:
+        if not top.is_zero() and (not _divides(surface, top) or _divides(surface, bottom)):
+            return "the jump is not proved to be normal to it"
+    return None
+
+
+def _divides(surface: object, p: object) -> bool:
+    return bool(divmod(p, surface)[1].is_zero())  # type: ignore[operator]
+
+
+def continuous(e: sp.Expr, strain: Sequence[sp.Symbol], positive: Collection[str]) -> bool:
+    """Whether an expression is proved to be continuous across the surfaces where its steps and moduli turn."""
+    names = set(strain)
+    if not any(part.free_symbols & names for part in e.atoms(*_PARTS)):
+        return True
+    try:
+        tower, [(top, bottom)] = normal_forms([e], positive)
+        plain = tower.expression(top) / tower.expression(bottom)
+        for p in [m.args[0] for m in tower.meaning if isinstance(m, sp.Abs) and m.free_symbols & names]:
+            if not any(part.args[0] in (p, -p) for part in plain.atoms(sp.Abs)):
+                return False
+            above, below = (
+                plain.xreplace({part: side * p for part in plain.atoms(sp.Abs) if part.args[0] in (p, -p)})
+                for side in (1, -1)
+            )
+            forms = normal_forms([p, above - below], positive, noting=False)[1]
+            (surface, _), (jump, under) = forms
+            if not jump.is_zero() and (not _divides(surface, jump) or _divides(surface, under)):
+                return False
+    except NoForm:
+        return False
+    return True
