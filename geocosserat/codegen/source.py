@@ -56,7 +56,7 @@ def _tapes(p: Pointwise) -> dict[str, Tape]:
             {name: e for name, e in p.velocity.items() if not name.startswith("slip")},
             given={name: e for name, e in p.velocity.items() if name.startswith("slip")},
         ),
-        "energy": record(p.energy, given=p.stress),
+        "energy": record(p.energy, given=p.stress).only(p.energy),
         "supply": record(p.supply, given=p.stress).only(p.supply),
         "loss": record(p.loss),
         "advection": record(p.advection),
