@@ -78,7 +78,7 @@ def load_any(scene: SceneLike, settings: Sequence[str] = ()) -> Scene:
 def _stored(scene: Scene) -> Scene:
     """The scene, with what is found of the energy and the potential of a law that is written as stress and wrench."""
     model = scene.model
-    if not (model.law and model.law.energy is None) and not any(isinstance(e, LawWrench) for e in model.effects):
+    if all(law.energy is not None and law.wrench is None for law in _laws(scene)):
         return scene
     from geocosserat.passivity.storing import stored
 
@@ -182,14 +182,20 @@ def run(
         keeper.save()
         raise
     solution = solution_of(read, attempt, estimate, clock)
-    if read.model.law is not None:
-        solution = replace(solution, contents={**solution.contents, "law": _said_of(read.model.law)})
+    for law in _laws(read):
+        solution = replace(solution, contents={**solution.contents, "law": _said_of(law)})
     files: list[Path] = []
     if folder is not None:
         files = [folder / SOLUTION, folder / PICTURE, folder / SUMMARY]
         _write(solution, files, summary(solution, files, scene=read.path))
         keeper.finish()
     return Run(solution, summary(solution, files, scene=read.path))
+
+
+def _laws(scene: Scene) -> list[Law]:
+    """The law of the rod, or none."""
+    found = [effect.law for effect in scene.model.effects if isinstance(effect, LawWrench)]
+    return [scene.model.law] if scene.model.law else found
 
 
 def _said_of(law: Law) -> dict[str, Any]:

@@ -161,8 +161,7 @@ def _parameters(table: Table, group: Group, given: Mapping[str, float]) -> tuple
     if "parameters" not in table:
         return {}, {}
     place, values = table.at("parameters")
-    if not isinstance(values, dict):
-        read_parameters(place, values)
+    read_parameters(place, dict.fromkeys(values, 0) if isinstance(values, dict) else values)  # names, and how many
     meant = {*RESERVED, *group.strain, *rates(group), *pose_names(group)}
     for name in values:
         if name in meant:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -14,8 +15,12 @@ from geocosserat.model.errors import InputError
 from geocosserat.model.place import Found, Place, shown
 
 MAX_BYTES = 1_000_000
-MAX_LINE = 12_000  # tomllib takes quadratic time for a long dotted key
+MAX_LINE = 12_000
 MAX_LEVELS = 8
+_STRINGS = re.compile(
+    r'"""(?:\\.|[^\\])*?"{3,5}|\'\'\'.*?\'{3,5}|"(?:\\[^\n]|[^"\\\n])*"|\'[^\'\n]*\'|["\'][^\n]*|#[^\n]*', re.DOTALL
+)
+"""Of TOML, closed or not, and comments: what is left of a text without them has dots in keys, numbers and times."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +35,7 @@ class Read:
     @property
     def file(self) -> str:
         """The name for messages."""
-        return self.path or self.what
+        return shown_path(self.path) if self.path else self.what
 
 
 def read(scene: str | os.PathLike[str] | Mapping[str, Any], what: str = "scene") -> Read:
@@ -49,7 +54,7 @@ def read(scene: str | os.PathLike[str] | Mapping[str, Any], what: str = "scene")
         raise InputError("a path, TOML text or a mapping", shown(scene), "pass one of these", key=what)
     path = os.fspath(scene)
     text = _text(path)
-    return Read(_tables(path, text, what), text, path, what)
+    return Read(_tables(shown_path(path), text, what), text, path, what)
 
 
 def _text(path: str) -> str:
@@ -67,7 +72,7 @@ def _text(path: str) -> str:
         line = content[: error.start].count(b"\n") + 1
         raise InputError(
             "UTF-8 text", f"the byte 0x{content[error.start]:02x}", "save the file as UTF-8",
-            key=f"line {line}", file=path,
+            key=f"line {line}", file=shown_path(path),
         ) from None  # fmt: skip
 
 
@@ -85,10 +90,14 @@ def _tables(file: str, text: str, what: str) -> dict[str, Any]:
                 f"lines of at most {MAX_LINE} characters", f"one of {len(line)}", "break the line",
                 key=f"line {number}", file=file,
             )  # fmt: skip
+    flatter = InputError(f"at most {MAX_LEVELS} levels of nesting", "more", "write it flatter", file=file)
+    # before tomllib reads them, which takes quadratic time and memory for a long dotted key
+    if any(piece.count(".") > MAX_LEVELS for piece in re.split(r"[=,\n]", _STRINGS.sub("", text))):
+        raise flatter
     try:
         tables = tomllib.loads(text)
     except RecursionError:
-        raise InputError(f"at most {MAX_LEVELS} levels of nesting", "more", "write it flatter", file=file) from None
+        raise flatter from None
     except ValueError as error:  # TOMLDecodeError, and integers of thousands of digits
         raise InputError("valid TOML", str(error), "correct that line", file=file) from None
     values = _plain(Place(file), tables, 0)

@@ -162,8 +162,9 @@ def split(
     if energy is not None and (sp.count_ops(energy) > _LONGEST or not continuous(energy, turns, positive)):
         energy = None
     # a work that is regular may be written so that it is not: (1 - cos x) / x
-    if energy is not None and any(energy.subs(x, 0).has(*_BAD) for x in turns):
-        energy = None
+    if energy is not None:
+        energy = sp.expand_mul(energy)  # x log(x) / x is regular
+        energy = None if any(energy.subs(x, 0).has(*_BAD) for x in turns) else energy
     if energy is not None:
         rest = [readable(e - slope(energy, d), positive) for e, d in zip(shifted, turns, strict=True)]
         along = sp.Add(*(r * d for r, d in zip(rest, turns, strict=True)))

@@ -80,6 +80,8 @@ def viscous_answer(law: Law) -> FrictionAnswer | None:
     positive = {name for name, sign in law.open.items() if sign == "positive"}
     matrix = [[e.diff(x) for x in speeds] for e in viscous]
     bends = [entry.diff(x) for row in matrix for entry in row for x in speeds]
+    if any(e.has(sp.nan, sp.zoo) for e in viscous):
+        return FrictionAnswer(None, None, "the stress has no value at rest: its viscous part is not told apart")
     if any(e.has(sp.DiracDelta, sp.Heaviside, sp.sign) for row in matrix for e in row):
         return _nonlinear(viscous, speeds, law)
     if vanishes(bends, positive).value is True:
@@ -122,6 +124,7 @@ def _nonlinear(viscous: Sequence[sp.Expr], speeds: Sequence[sp.Symbol], law: Law
     signs = {symbol(name): sp.Symbol(name, positive=True) for name, sign in law.open.items() if sign == "positive"}
     box = _domain(law)
     signs |= {symbol(name): sp.Symbol(name, nonnegative=True) for name, (low, _) in box.items() if low >= 0}
+    signs[symbol("t")] = sp.Symbol("t", nonnegative=True)
     if all(_not_negative(term.xreplace(signs), speeds) for term in sp.Add.make_args(power)):
         how = "the power is a sum of terms that cannot be negative"
         return FrictionAnswer(True, "proved", how, assumptions=assumed)
@@ -161,14 +164,14 @@ def _sampled(power: sp.Expr, box: Box, law: Law) -> Iterator[dict[str, float]]:
     positive = {name for name, sign in law.open.items() if sign == "positive"}
     with precision(128):
         for k in range(_SAMPLES):
-            width = (Fraction(1), Fraction(1, 10), Fraction(10))[k % 3]
+            width = (Fraction(1), Fraction(1, 10), Fraction(10), Fraction(1000))[k % 4]
             point = {}
             for name in names:
                 share = Fraction(chance.randrange(1, 97), 97)
                 if name in box:
                     low, high = box[name]
                     point[name] = low + share * (high - low)
-                elif name in positive:
+                elif name in positive or name == "t":
                     point[name] = width * share
                 else:
                     point[name] = width * (2 * share - 1)

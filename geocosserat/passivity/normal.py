@@ -279,6 +279,9 @@ class Tower(Ring):
             if sign := self.sign(p):
                 lump = lump if sign > 0 or n % 2 == 0 else -lump
                 result = self.multiply(result, self.power(self._root_unknown(sign * p, q), rest))
+            elif rest % 2 == 0:
+                # the fourth root of p**2 is a root of |p|
+                result = self.multiply(result, self.power(self._root_unknown(self._modulus_of(p)[0], q), rest))
             else:
                 lump = self.times(lump, p**rest)
         if not lump.is_one():

@@ -30,7 +30,7 @@ Rows: TypeAlias = Sequence[Sequence[sp.Expr]]
 _BITS: Final = 128
 _BOXES: Final = 3000
 _SAMPLES: Final = 400
-_WIDE: Final = (Fraction(-10), Fraction(10))  # where names without bounds are sampled
+_WIDTHS: Final = tuple(Fraction(w) for w in (10, 10, 1, 10, 1000))  # where names without bounds are sampled
 _EXACT_MINORS: Final = 3
 
 
@@ -68,6 +68,7 @@ def decide_form(rows: Rows, box: Box, unbounded: Collection[str], opened: Mappin
     if found is not None:
         return found
     margin, scaled = _least(rows, used, sorted(names - set(used)))
+    unclear = FormAnswer(None, None, "negative somewhere, it seems, but not enclosed there", margin, scaled)
     ways: dict[str, None] = {}
     for block in blocks(rows):
         part = [[rows[i][j] for j in block] for i in block]
@@ -76,7 +77,9 @@ def decide_form(rows: Rows, box: Box, unbounded: Collection[str], opened: Mappin
         free = {x.name for row in part for e in row for x in e.free_symbols} - set(used)
         if _by_signs(part, box):
             ways["no principal minor can be negative, by the signs of its factors"] = None
-        elif not free and _covered(part, used):
+        elif not free and (covered := _covered(part, used)):
+            if isinstance(covered, dict):
+                return _refuted_at(rows, {**{name: low for name, (low, _) in used.items()}, **covered}) or unclear
             ways["positive definite on boxes that fill the domain"] = None
         else:
             return FormAnswer(True, "sampled", f"no negative value at {_SAMPLES} random points", margin, scaled)
@@ -185,8 +188,10 @@ def _ball(x: Fraction) -> arb:
 
 def _points(box: Box, free: Sequence[str]) -> Iterator[dict[str, Fraction]]:
     chance = random.Random(1)
-    ends = {**box, **dict.fromkeys(free, _WIDE)}
+    ends = dict(box)
     for k in range(_SAMPLES):
+        wide = _WIDTHS[k % len(_WIDTHS)]
+        ends |= {name: (Fraction(0) if name == "t" else -wide, wide) for name in free}
         share = {name: Fraction(chance.randrange(0, 98), 97) for name in ends}
         if k < 2:
             share = dict.fromkeys(ends, Fraction(k))
@@ -195,15 +200,19 @@ def _points(box: Box, free: Sequence[str]) -> Iterator[dict[str, Fraction]]:
 
 def _refuted(rows: Rows, box: Box, free: Sequence[str]) -> FormAnswer | None:
     with precision(_BITS):
-        for point in _points(box, free):
-            balls = _balls(rows, {name: _ball(x) for name, x in point.items()})
-            direction = _negative(balls)
-            if direction is not None:
-                at = {name: float(x) for name, x in point.items()}
-                where = ", ".join(f"{name} = {x:.6g}" for name, x in at.items())
-                return FormAnswer(False, "proved", f"negative in a direction at {where}, enclosed in balls",
-                                  _eigenvalue(_floats(balls)), direction=direction, at=at)  # fmt: skip
-    return None
+        return next((found for point in _points(box, free) if (found := _refuted_at(rows, point))), None)
+
+
+def _refuted_at(rows: Rows, point: Mapping[str, Fraction]) -> FormAnswer | None:
+    with precision(_BITS):
+        balls = _balls(rows, {name: _ball(x) for name, x in point.items()})
+        direction = _negative(balls)
+        if direction is None:
+            return None
+        at = {name: float(x) for name, x in point.items()}
+        where = ", ".join(f"{name} = {x:.6g}" for name, x in at.items())
+        return FormAnswer(False, "proved", f"negative in a direction at {where}, enclosed in balls",
+                          _eigenvalue(_floats(balls)), direction=direction, at=at)  # fmt: skip
 
 
 def _negative(balls: Any) -> tuple[float, ...] | None:
@@ -233,8 +242,9 @@ def _least(rows: Rows, box: Box, free: Sequence[str]) -> tuple[float | None, flo
     return (min(margins), min(scaled)) if margins else (None, None)
 
 
-def _covered(rows: Rows, box: Box) -> bool:
-    """Whether the matrix is proved definite on each of a number of boxes that are the whole together."""
+def _covered(rows: Rows, box: Box) -> bool | dict[str, Fraction]:
+    """Whether the matrix is proved definite on each of a number of boxes that are the whole together; a point where it
+    is not semidefinite, if one is met on the way."""
     names = {x.name for row in rows for e in row for x in e.free_symbols}
     waiting = [{name: ends for name, ends in box.items() if name in names}]
     with precision(_BITS):
@@ -246,6 +256,9 @@ def _covered(rows: Rows, box: Box) -> bool:
                 continue
             if not part:
                 return False
+            centre = {name: (a + b) / 2 for name, (a, b) in part.items()}
+            if _refuted_at(rows, centre) is not None:
+                return centre
             name = max(part, key=lambda n: part[n][1] - part[n][0])
             low, high = part[name]
             middle = (low + high) / 2
@@ -258,6 +271,7 @@ def _by_signs(rows: Rows, box: Box) -> bool:
     if len(rows) > _EXACT_MINORS:
         return False
     signs = {symbol(name): sp.Symbol(name, nonnegative=True) for name, (low, _) in box.items() if low >= 0}
+    signs[symbol("t")] = sp.Symbol("t", nonnegative=True)
     for minor in _minors(rows, range(len(rows))):
         e = minor.xreplace(signs)
         if (sp.factor(e) if e.is_polynomial() else e).is_nonnegative is not True:
@@ -292,6 +306,7 @@ def _by_minors(rows: Rows, box: Box, opened: Mapping[str, str]) -> FormAnswer:
     names = {x for row in rows for e in row for x in e.free_symbols}
     signs = {x: sp.Symbol(x.name, positive=True) for x in names if opened.get(x.name) == "positive"}
     signs |= {x: sp.Symbol(x.name, nonnegative=True) for x in names if x.name in box and box[x.name][0] >= 0}
+    signs |= {x: sp.Symbol(x.name, nonnegative=True) for x in names if x.name == "t"}
     varying = sorted(x.name for x in names if x.name not in opened)
     texts: dict[str, None] = {}
     strict = False
@@ -302,8 +317,10 @@ def _by_minors(rows: Rows, box: Box, opened: Mapping[str, str]) -> FormAnswer:
             e = sp.factor(minor.xreplace(signs))
             if e.is_positive or (e.is_nonnegative and not large):
                 continue
-            if e.is_negative or (large and e.is_nonpositive):
+            if e.is_negative:
                 return FormAnswer(False, "proved", f"a principal minor, {e}, is negative for all values", conditions=())
+            if large and e.is_nonpositive:
+                return FormAnswer(None, None, f"not definite: a leading principal minor, {e}, is not positive")
             texts[f"{_plain(e)} {'>' if large else '>='} 0"] = None
     if not texts:
         return FormAnswer(True, "proved", "no principal minor can be negative, by the signs of its factors")

@@ -24,7 +24,7 @@ class Singular:
 
     shape: "wall", planes, which part the strains into convex pieces; "edge", the boundary of a convex domain; "line",
     of codimension two, which a loop can encircle; "small", of a higher codimension; "curved", anything else;
-    "essential", walls within a function (exp(1/x)), across which the law may step. point: on a line.
+    "essential", walls and curved ones within a function (exp(1/x)), across which the law may step. point: on a line.
     """
 
     expression: sp.Expr
@@ -120,7 +120,11 @@ def _single(e: sp.Expr, above: bool, within: bool, strain: Sequence[str]) -> Sin
     inside = [x for x in e.free_symbols if x.name in strain]
     if len(inside) == 1:
         return Singular(e, "essential" if within and not above else "edge" if above else "wall")
-    return Singular(e, "curved")
+    return _curved(e, above, within)
+
+
+def _curved(e: sp.Expr, above: bool, within: bool) -> Singular:
+    return Singular(e, "essential" if within and not above else "curved")
 
 
 def _shape(
@@ -130,13 +134,14 @@ def _shape(
     if len(inside) == 1:
         return _single(e, above, within, strain)
     if not e.is_polynomial(*inside):
-        return Singular(e, "curved")
+        return _curved(e, above, within)
     polynomial = sp.Poly(e, *inside)
     if polynomial.total_degree() == 1:
         return Singular(e, "essential" if within and not above else "edge" if above else "wall")
     if polynomial.total_degree() == 2 and all(c.is_Rational for c in polynomial.coeffs()):
-        return _quadric(polynomial, e, above, centre)
-    return Singular(e, "curved")
+        found = _quadric(polynomial, e, above, centre)
+        return _curved(e, above, within) if within and found is not None and found.shape in ("curved", "wall") else found
+    return _curved(e, above, within)
 
 
 def _quadric(polynomial: sp.Poly, e: sp.Expr, above: bool, centre: Mapping[str, Any]) -> Singular | None:

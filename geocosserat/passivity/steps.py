@@ -6,13 +6,13 @@ normal to the surface, jump_i dp/dE_j = jump_j dp/dE_i: then the jump of the pot
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import sympy as sp
 
-from geocosserat.passivity.normal import normal_forms
-from geocosserat.passivity.polynomials import NoForm
+from geocosserat.passivity.normal import Tower, normal_forms
+from geocosserat.passivity.polynomials import NoForm, Poly
 from geocosserat.passivity.ranges import Range, sign_on
 from geocosserat.passivity.readable import to_expression
 
@@ -40,7 +40,12 @@ def steps_of(
     except NoForm:
         if written:
             return Steps((), None, "the steps were not separated: no normal form was found")
+        if any(_may_hide(part, names) for e in stress for part in e.atoms(sp.Pow, sp.log)):
+            return Steps((), None, "roots may hide steps: no normal form was found")
         return Steps((), True, "no steps are written")
+    hidden = [p for p in _radicands(tower, names) if not _outside(p, box)]
+    if hidden:
+        return Steps((), None, f"the root of {hidden[0]} may hide a step")
     moduli = [m.args[0] for m in tower.meaning if isinstance(m, sp.Abs) and m.free_symbols & names]
     surfaces = [p for p in moduli if not _outside(p, box)]
     if not surfaces:
@@ -52,6 +57,34 @@ def steps_of(
     count = f"{len(surfaces)} surface{'s' if len(surfaces) > 1 else ''}"
     how = f"the jumps are normal to {count}, by normal forms divided by what vanishes there"
     return Steps(tuple(surfaces), True, how)
+
+
+def _may_hide(part: sp.Expr, names: Collection[sp.Symbol]) -> bool:
+    if part.is_Pow and part.exp.is_Integer:
+        return False
+    return bool(part.args[0].free_symbols & set(names))
+
+
+def _radicands(tower: Tower, names: Collection[sp.Symbol]) -> Iterator[sp.Expr]:
+    """What stands under roots and may vanish without a change of sign: 1 - cos x is a square, and its root a modulus.
+
+    A polynomial without repeated factors changes its sign where it vanishes: there a root ends.
+    """
+    for index, _, inside in tower.rules:
+        if index not in tower.radicals or isinstance(tower.meaning[index], sp.Abs):
+            continue
+        used = [tower.meaning[i] for i, n in enumerate(inside.degrees()) if n]
+        functions = [m for m in used if not m.is_Symbol and not isinstance(m, sp.Abs) and m.free_symbols & set(names)]
+        if functions and not _one_sign(tower, inside):
+            yield tower.expression(inside)
+
+
+def _one_sign(tower: Tower, p: Poly) -> bool:
+    """Whether all terms of a polynomial have one sign, and one of them does not vanish, by what is above zero alone."""
+    terms = p.to_dict()
+    odd = any(n % 2 and i not in tower.above_zero for m in terms for i, n in enumerate(m))
+    strict = any(all(i in tower.above_zero for i, n in enumerate(m) if n) for m in terms)
+    return strict and not odd and len({c > 0 for c in terms.values()}) == 1
 
 
 def _outside(p: sp.Expr, box: Mapping[str, Range]) -> bool:
@@ -96,10 +129,13 @@ def _divides(surface: object, p: object) -> bool:
 def continuous(e: sp.Expr, strain: Sequence[sp.Symbol], positive: Collection[str]) -> bool:
     """Whether an expression is proved to be continuous across the surfaces where its steps and moduli turn."""
     names = set(strain)
-    if not any(part.free_symbols & names for part in e.atoms(*_PARTS)):
+    roots = any(_may_hide(part, names) for part in e.atoms(sp.Pow, sp.log))
+    if not roots and not any(part.free_symbols & names for part in e.atoms(*_PARTS)):
         return True
     try:
         tower, [(top, bottom)] = normal_forms([e], positive)
+        if any(True for _ in _radicands(tower, names)):
+            return False
         plain = tower.expression(top) / tower.expression(bottom)
         for p in [m.args[0] for m in tower.meaning if isinstance(m, sp.Abs) and m.free_symbols & names]:
             if not any(part.args[0] in (p, -p) for part in plain.atoms(sp.Abs)):

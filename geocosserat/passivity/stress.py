@@ -96,7 +96,28 @@ def check_stress(law: Law) -> StressAnswer:
         zero = [name for name in real if _checked(_without(law, name)).conservative]
         found = tuple(((symbol(name), sp.S.Zero),) for name in zero)
         answer = replace(answer, conditions=Conditions(found, exact=False))
+    elif answer.conservative is False and answer.conditions is not None:
+        answer = replace(answer, conditions=_kept(law, answer.conditions))
     return answer
+
+
+def _kept(law: Law, found: Conditions) -> Conditions:
+    """The conditions under which a symmetric tangent is enough: steps and lines may do work still."""
+    alternatives, exact = [], found.exact
+    for alternative in found.alternatives:
+        values = {a.name: to_expression(b) for a, b in alternative if a.is_Symbol}
+        bound = {name: value for name, value in values.items() if value is not None}
+        if len(bound) < len(alternative) or law.stress is None:
+            exact = False
+            continue
+        opened = {name: sign for name, sign in law.open.items() if name not in bound}
+        stress = tuple(substitute(e, bound) for e in law.stress)
+        part = _checked(replace(law, stress=stress, energy=None, open=opened))
+        if part.conservative:
+            alternatives.append(alternative)
+        elif part.conservative is None or any(symbols(e) & set(opened) for e in part.stress):
+            exact = False
+    return Conditions(tuple(alternatives), exact)
 
 
 def _checked(law: Law) -> StressAnswer:
@@ -299,12 +320,19 @@ class _Question:
     def _as_regular(self, density: sp.Expr, singular: Sequence[Singular]) -> bool:
         """Whether a density is continuous and regular wherever the stress is."""
         # an arctangent is regular where its argument is
+        turning = [to_expression(part.args[0]) for part in density.atoms(sp.atan)]
         energy = to_expression(density.replace(sp.atan, lambda z: z))
-        if energy is None or not continuous(density, self.strain, self.positive):
+        if energy is None or None in turning or not continuous(density, self.strain, self.positive):
+            return False
+        # it steps where its argument has a pole, and the stress may be finite there
+        inside = [e for e in turning if e is not None]
+        if singular_sets(inside, self.names, self.box, self.positive, self.centre):
             return False
         known = {str(s.expression) for s in singular}
         own = singular_sets([energy], self.names, self.box, self.positive, self.centre)
-        return all(str(s.expression) in known or str(-s.expression) in known for s in own)
+        return all(
+            s.shape != "essential" and (str(s.expression) in known or str(-s.expression) in known) for s in own
+        )
 
     def _on(self, surfaces: Sequence[sp.Expr]) -> list[list[Fraction]]:
         """Points on surfaces that are linear in a component, a little beside the reference."""

@@ -25,6 +25,7 @@ POINTS: Final = 6
 _TRIES: Final = 60
 _WIDTHS: Final = tuple(Fraction(w) for w in ("1/2", "1/10", "2", "1", "1/100", "5"))
 _MOST_SURFACES: Final = 24
+_FLAT: Final = 500  # digits, or arguments of exponentials
 _STEPS: Final = 97  # a prime, so that no point lies on a step at a round number
 
 
@@ -82,7 +83,9 @@ def vanishes(
     if stepped:
         # a branch that no point lies in may be another function
         return Answer(None, None, f"vanishes at {len(points)} random points, but steps were not separated")
-    digits = _digits(entries, points[:2])
+    digits, flat = _digits(entries, points)
+    if flat:
+        return Answer(None, None, f"vanishes to {digits} digits at {len(points)} random points, but functions are flat there")
     if digits < 30:
         return Answer(None, None, f"vanishes to {digits} digits only at {len(points)} random points")
     return Answer(True, "probable", f"vanishes to {digits} digits at {len(points)} random points; no normal form found")
@@ -175,9 +178,13 @@ def _beside(
 
 
 def _values(entries: Sequence[sp.Expr], point: Point) -> Iterator[arb]:
-    balls = {name: arb(fmpq(x.numerator, x.denominator)) for name, x in point.items()}
+    balls = _balls(point)
     seen: dict[sp.Expr, arb] = {}
     return (enclosure(e, balls, seen) for e in entries)
+
+
+def _balls(point: Point) -> dict[str, arb]:
+    return {name: arb(fmpq(x.numerator, x.denominator)) for name, x in point.items()}
 
 
 def _refuted(entries: Sequence[sp.Expr], points: Sequence[Point], rising: Sequence[int]) -> Answer | None:
@@ -192,15 +199,26 @@ def _refuted(entries: Sequence[sp.Expr], points: Sequence[Point], rising: Sequen
     return None
 
 
-def _digits(entries: Sequence[sp.Expr], points: Sequence[Point]) -> int:
-    """Digits after the point to which all entries are enclosed around zero."""
-    worst = arb(0)
+def _digits(entries: Sequence[sp.Expr], points: Sequence[Point]) -> tuple[int, bool]:
+    """Digits after the point to which all entries are enclosed around zero, and whether any function is so flat, or so
+    near to zero, at these points that what vanishes there need not vanish elsewhere: tanh(1000), x**10000."""
+    worst, flat = arb(0), False
     with precision(LONG[-1]):
-        for point in points:
-            for value in _values(entries, point):
-                worst = worst.max(value.abs_upper()) if value.is_finite() else arb("inf")
+        for k, point in enumerate(points):
+            seen: dict[sp.Expr, arb] = {}
+            for e in entries:
+                value = enclosure(e, _balls(point), seen)
+                if k < 2:
+                    worst = worst.max(value.abs_upper()) if value.is_finite() else arb("inf")
+            flat = flat or any(_flat(part, value, seen) for part, value in seen.items())
         if not worst.is_finite() or worst > 1:
-            return 0
+            return 0, flat
         if worst.is_zero():
-            return LONG[-1]
-        return int(float((-worst.log() / arb(10).log()).mid()))
+            return LONG[-1], flat
+        return int(float((-worst.log() / arb(10).log()).mid())), flat
+
+
+def _flat(part: sp.Expr, value: arb, seen: Mapping[sp.Expr, arb]) -> bool:
+    if part.func in (sp.tanh, sp.coth, sp.exp, sp.sech, sp.csch) and not abs(seen[part.args[0]]) < _FLAT:
+        return True
+    return bool(part.is_Pow and not value.contains(0) and abs(value) < arb(10) ** -_FLAT)

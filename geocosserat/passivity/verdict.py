@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final, Literal, TypeAlias
 
+from geocosserat.model.expressions import steps, symbols
 from geocosserat.passivity.conditions import Conditions
 from geocosserat.passivity.friction import FrictionAnswer
 from geocosserat.passivity.stress import StressAnswer
@@ -43,9 +44,18 @@ def stress_part(answer: StressAnswer) -> Part:
 
 
 def _stress_condition(answer: StressAnswer) -> str | None:
-    """On open parameters."""
+    """On open parameters; none for what may be driven as well.
+
+    Conditions under which the curl vanishes are necessary. Where there are steps or singular sets they need not be
+    sufficient: those may do work all the same.
+    """
     found = answer.conditions
-    return None if found is None or answer.timed else _in_words(found)
+    if found is None or not found.alternatives or answer.timed is not False:
+        return None
+    stepped = any(symbols(step) - {"u", "t"} for e in answer.stress for step in steps(e))
+    if answer.curl and (stepped or answer.steps or answer.singular):
+        return f"only if {found}" if found.exact else None
+    return _in_words(found)
 
 
 def _in_words(found: Conditions) -> str | None:
@@ -73,7 +83,7 @@ def wrench_part(answer: WrenchAnswer) -> Part:
     found = answer.exact_if or answer.closed_if
     if found is not None:
         why = f"the wrench has no potential: {answer.how}"
-        return Part("wrench", "driven", answer.grade or "proved", why, _in_words(found))
+        return Part("wrench", "driven", answer.grade or "proved", why, None if answer.timed else _in_words(found))
     return Part("wrench", "undecided", None, f"the wrench: {answer.how}")
 
 
