@@ -7,6 +7,7 @@ import os
 import pickle
 import signal
 import sys
+import warnings
 from collections.abc import Callable
 from contextlib import suppress
 from multiprocessing import Pipe
@@ -94,7 +95,8 @@ def _answer(work: Callable[[], Any], memory: int) -> bytes:
     except RecursionError:
         failure = OutOfBounds("it is nested too deeply")
     except Exception as error:
-        failure = error
+        digits = isinstance(error, ValueError) and "integer string conversion" in str(error)  # Python's own bound
+        failure = OutOfBounds("it has numbers of thousands of digits") if digits else error
     except BaseException as error:  # an exit of the work is not one of the program
         failure = RuntimeError(f"{type(error).__name__}: {error}")
     try:
@@ -108,6 +110,7 @@ def _answer(work: Callable[[], Any], memory: int) -> bytes:
 def _silence() -> None:
     """Warnings, and the last words of libraries in C that are out of memory."""
     faulthandler.disable()
+    warnings.simplefilter("ignore")
     with suppress(OSError):
         nowhere = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
         sys.stdout = sys.stderr = nowhere

@@ -365,8 +365,6 @@ def check(
 
     Raises InputError for a wrong law or folder.
     """
-    from geocosserat.passivity.check import check as check_law
-
     read = law if isinstance(law, Law) else load_law(law, values)
     for name in values or ():
         if name not in read.parameters:
@@ -377,28 +375,35 @@ def check(
         witnesses = ("witness_stress.toml", "witness_wrench.toml")
         _claim(folder, overwrite, (*witnesses, LAW_PICTURE, PASSAGE, FINDINGS))
     try:
-        found = bounded(partial(check_law, read), seconds)
+        found, fields, content = bounded(partial(_answered, read, folder is not None), seconds)
     except OutOfBounds as error:
         if folder is not None:
             _give_back(folder)
         why = {"verdict": "undecided", "grade": None, "conditions": [], "not_checked": [f"all: {error}"]}
         return Checked(None, (), {"law": read.path or read.name, "name": read.name, **why, "files": []})
-    files = () if folder is None else _write_check(found, folder)
-    return Checked(found, files, {**found.fields, "files": [str(file) for file in files]})
+    files = () if folder is None else tuple(write_bytes(folder / name, data) for name, data in content.items())
+    return Checked(found, files, {**fields, "files": [str(file) for file in files]})
 
 
-def _write_check(found: "Check", folder: Path) -> tuple[Path, ...]:
+def _answered(law: Law, written: bool) -> "tuple[Check, dict[str, Any], dict[str, bytes]]":
+    """All that is found of a law, its fields, and the files to write."""
+    from geocosserat.passivity.check import check as check_law
+
+    found = check_law(law)
+    fields = found.fields
+    if not written:
+        return found, fields, {}
     from geocosserat.passivity.picture import image
     from geocosserat.passivity.portrait import portrait
     from geocosserat.passivity.show import passage
 
     content = {f"witness_{part}.toml": text.encode() for part, text in found.scenes.items()}
     content[PASSAGE] = passage(found).encode()
-    content[FINDINGS] = (json.dumps(found.fields, indent=2, allow_nan=False) + "\n").encode()
+    content[FINDINGS] = (json.dumps(fields, indent=2, allow_nan=False) + "\n").encode()
     figure = portrait(found)
     if figure is not None:
         content[LAW_PICTURE] = image(figure, Path(LAW_PICTURE).suffix)
-    return tuple(write_bytes(folder / name, data) for name, data in content.items())
+    return found, fields, content
 
 
 def paper(progress: Callable[[int, int], None] | None = None, processes: int = 1) -> "Report":

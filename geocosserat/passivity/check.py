@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-from geocosserat.model.expressions import ExpressionError, to_text
+from geocosserat.model.expressions import ExpressionError, steps, to_text
 from geocosserat.model.law import Law
 from geocosserat.passivity.friction import FrictionAnswer, friction_answer, viscous_answer
 from geocosserat.passivity.loop import Loop
@@ -84,6 +84,8 @@ class Check:
     def assumptions(self) -> tuple[str, ...]:
         """What was taken for granted, each once."""
         found = [*ASSUMED, *self._prestress()]
+        if self.law.energy is not None and steps(self.law.energy):
+            found.append("the stress is the gradient of the energy beside its steps: where the energy jumps, that is lost")
         for answer in (self.viscous, self.friction, self.wrench, self.stability, self.symmetry):
             found += answer.assumptions if answer else ()
         return tuple(dict.fromkeys(found))
@@ -223,8 +225,10 @@ def check(law: Law, brief: bool = False) -> Check:
     def asked(what: str, question: Any, *more: Any) -> Any:
         try:
             return question(law, *more)
-        except (ExpressionError, TypeError) as error:
-            failed[what] = str(error)
+        except (MemoryError, RecursionError):
+            raise
+        except Exception as error:  # of a question that meets what nobody thought of: no answer, and no verdict
+            failed[what] = str(error) if isinstance(error, ExpressionError) else f"{type(error).__name__}: {error}"
             return None
 
     stress = asked("stress", check_stress) if law.stress is not None else None

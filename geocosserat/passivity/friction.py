@@ -84,10 +84,17 @@ def viscous_answer(law: Law) -> FrictionAnswer | None:
         return FrictionAnswer(None, None, "the stress has no value at rest: its viscous part is not told apart")
     if any(e.has(sp.DiracDelta, sp.Heaviside, sp.sign) for row in matrix for e in row):
         return _nonlinear(viscous, speeds, law)
-    if vanishes(bends, positive).value is True:
+    plain = not any(_written(part, speeds) for e in viscous for part in e.atoms(sp.Pow, sp.Function))
+    if plain and vanishes(bends, positive).value is True:
         linear = [[e.xreplace(still) for e in row] for row in matrix]
         return _of_form(linear, law.group.strain, _domain(law), law)
     return _nonlinear(viscous, speeds, law)
+
+
+def _written(part: sp.Expr, speeds: Sequence[sp.Symbol]) -> bool:
+    """Whether a function of rates is written, which may hide steps that no slope shows."""
+    whole = part.is_Pow and part.exp.is_Integer and part.exp > 0
+    return not whole and bool(part.free_symbols & set(speeds))
 
 
 def _domain(law: Law) -> Box:

@@ -66,8 +66,11 @@ class Loop:
 def exact_number(value: Fraction) -> Expression:
     """An expression that is exactly a rational number."""
     number = float(value)
-    if Fraction(repr(number)) == value:
+    short = Fraction(repr(number))
+    if short == value:
         return Number(number)
+    if value.denominator == 1:  # more digits than a number has
+        return Binary("+", Number(number), exact_number(value - short))
     return Binary("/", exact_number(Fraction(value.numerator)), exact_number(Fraction(value.denominator)))
 
 

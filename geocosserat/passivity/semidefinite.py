@@ -68,6 +68,8 @@ def decide_form(rows: Rows, box: Box, unbounded: Collection[str], opened: Mappin
     if found is not None:
         return found
     margin, scaled = _least(rows, used, sorted(names - set(used)))
+    if margin is None:
+        return FormAnswer(None, None, f"no value at any of {_SAMPLES} random points")
     unclear = FormAnswer(None, None, "negative somewhere, it seems, but not enclosed there", margin, scaled)
     ways: dict[str, None] = {}
     for block in blocks(rows):

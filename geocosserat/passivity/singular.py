@@ -140,7 +140,8 @@ def _shape(
         return Singular(e, "essential" if within and not above else "edge" if above else "wall")
     if polynomial.total_degree() == 2 and all(c.is_Rational for c in polynomial.coeffs()):
         found = _quadric(polynomial, e, above, centre)
-        return _curved(e, above, within) if within and found is not None and found.shape in ("curved", "wall") else found
+        parts = found is not None and found.shape in ("curved", "wall")
+        return _curved(e, above, within) if within and parts else found
     return _curved(e, above, within)
 
 

@@ -46,6 +46,8 @@ def steps_of(
     hidden = [p for p in _radicands(tower, names) if not _outside(p, box)]
     if hidden:
         return Steps((), None, f"the root of {hidden[0]} may hide a step")
+    if (where := _otherwise_on(stress, strain, positive, box)) is not None:
+        return Steps((), None, f"where {where} = 0 the law may differ from both sides: its steps are one half there")
     moduli = [m.args[0] for m in tower.meaning if isinstance(m, sp.Abs) and m.free_symbols & names]
     surfaces = [p for p in moduli if not _outside(p, box)]
     if not surfaces:
@@ -57,6 +59,61 @@ def steps_of(
     count = f"{len(surfaces)} surface{'s' if len(surfaces) > 1 else ''}"
     how = f"the jumps are normal to {count}, by normal forms divided by what vanishes there"
     return Steps(tuple(surfaces), True, how)
+
+
+def _otherwise_on(
+    stress: Sequence[sp.Expr], strain: Sequence[sp.Symbol], positive: Collection[str], box: Mapping[str, Range]
+) -> sp.Expr | None:
+    """A surface of steps on which the stress is not proved to be the mean of what it is on both sides.
+
+    The step of zero is one half: what is linear in steps is the mean there, but heaviside(x)**2 or heaviside(x**2) are
+    not. A body may stay on a surface, as a straight rod does on that of no bending. Components along the normal of the
+    surface do not matter.
+    """
+    names = set(strain)
+    written = sorted({h.args[0] for e in stress for h in e.atoms(sp.Heaviside)}, key=sp.default_sort_key)
+    inner = [e for e in written if e.free_symbols & names and not _outside(e, box)]
+    if any(e.has(sp.Heaviside, sp.sign) for e in inner):
+        return inner[0]
+    try:
+        for inside in inner:
+            tower, [(top, _), *others] = normal_forms([inside, *written], positive, noting=False)
+            surfaces = [(p, n) for p, n in top.factor()[1] if tower.expression(p).free_symbols & names]
+            if any(n % 2 == 0 for _, n in surfaces):
+                return inside
+            for p, _ in surfaces:
+                same = [e for e, (other, _) in zip(written, others, strict=True) if _divides(p, other)]
+                if any(_not_mean(e, x, same, tower.expression(p), strain, positive)
+                       for e, x in zip(stress, strain, strict=True)):  # fmt: skip
+                    return inside
+    except NoForm:
+        return inner[0]
+    return None
+
+
+def _not_mean(
+    e: sp.Expr,
+    x: sp.Symbol,
+    same: Sequence[sp.Expr],
+    p: sp.Expr,
+    strain: Sequence[sp.Symbol],
+    positive: Collection[str],
+) -> bool:
+    """Whether a component of the stress, that along x, may differ from the mean where p = 0 and these steps turn."""
+    if not p.free_symbols & (set(strain) - {x}):
+        return False
+    steps = {sp.Heaviside(inside): sp.Dummy() for inside in same}
+    marked = e.xreplace(steps)
+    used = [d for d in steps.values() if marked.has(d)]
+    if not used:
+        return False
+    if not marked.is_polynomial(*used):
+        return True
+    above = [c for powers, c in sp.Poly(marked, *used).terms() if sum(powers) > 1]
+    if not above:
+        return False
+    (surface, _), *forms = normal_forms([p, *above], positive, noting=False)[1]
+    return any(not _divides(surface, top) or _divides(surface, bottom) for top, bottom in forms)
 
 
 def _may_hide(part: sp.Expr, names: Collection[sp.Symbol]) -> bool:

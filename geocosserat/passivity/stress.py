@@ -97,12 +97,16 @@ def check_stress(law: Law) -> StressAnswer:
         found = tuple(((symbol(name), sp.S.Zero),) for name in zero)
         answer = replace(answer, conditions=Conditions(found, exact=False))
     elif answer.conservative is False and answer.conditions is not None:
-        answer = replace(answer, conditions=_kept(law, answer.conditions))
+        answer = replace(answer, conditions=_kept(law, answer, answer.conditions))
     return answer
 
 
-def _kept(law: Law, found: Conditions) -> Conditions:
+def _kept(law: Law, answer: StressAnswer, found: Conditions) -> Conditions:
     """The conditions under which a symmetric tangent is enough: steps and lines may do work still."""
+    question = _Question(law)
+    steps = steps_of(question.exact, question.strain, question.positive, question.box)
+    if steps.workless and all(s.shape in _PARTING for s in answer.singular):
+        return found
     alternatives, exact = [], found.exact
     for alternative in found.alternatives:
         values = {a.name: to_expression(b) for a, b in alternative if a.is_Symbol}

@@ -65,7 +65,7 @@ def vanishes(
     points = list(_defined(entries, positive, near or {}, within or {}, random.Random(seed)))
     if not points:
         return Answer(None, None, f"no value of {_count(entries)} was found at {_TRIES} random points")
-    stepped = [part for e in entries for part in e.atoms(sp.Abs, sp.sign, sp.Heaviside)]
+    stepped = any(e.has(sp.Abs, sp.sign, sp.Heaviside) for e in entries)
     if refuted := _refuted(entries, points, QUICK):
         return refuted
     try:
@@ -76,8 +76,15 @@ def vanishes(
             unknowns = f"{len(tower.meaning)} unknown{'s' if len(tower.meaning) != 1 else ''}"
             words = f"{_count(entries)} reduced to zero over {unknowns}{rules}"
             return Answer(True, "proved", f"normal form: {words}")
+        # roots of squares are moduli, though they are not written so
+        moduli = [m.args[0] for m in tower.meaning if isinstance(m, sp.Abs) and m.free_symbols]
+        surfaces = [(x, p) for p in moduli for x in sorted(p.free_symbols, key=str) if _linear(p, x)]
+        beside = [at for x, p in surfaces for q in points[:2] for at in _beside(q, x, p, positive, within or {})]
+        if refuted := _refuted(entries, beside, QUICK):
+            return refuted
+        stepped = stepped or bool(moduli) or any(_of_functions(tower.meaning[i]) for i in tower.radicals)
     except NoForm:
-        pass
+        stepped = stepped or any(_of_symbols(part) for e in entries for part in e.atoms(sp.Pow, sp.log))
     if refuted := _refuted(entries, points, LONG):
         return refuted
     if stepped:
@@ -85,7 +92,7 @@ def vanishes(
         return Answer(None, None, f"vanishes at {len(points)} random points, but steps were not separated")
     digits, flat = _digits(entries, points)
     if flat:
-        return Answer(None, None, f"vanishes to {digits} digits at {len(points)} random points, but functions are flat there")
+        return Answer(None, None, f"vanishes to {digits} digits at {len(points)} random points, but functions are flat")
     if digits < 30:
         return Answer(None, None, f"vanishes to {digits} digits only at {len(points)} random points")
     return Answer(True, "probable", f"vanishes to {digits} digits at {len(points)} random points; no normal form found")
@@ -150,9 +157,26 @@ def _surfaces(entries: Sequence[sp.Expr]) -> list[tuple[sp.Symbol, sp.Expr]]:
     for e in entries:
         for part in e.atoms(sp.Abs, sp.sign, sp.Heaviside):
             for x in sorted(part.args[0].free_symbols, key=str):
-                if not part.args[0].has(sp.Abs, sp.sign, sp.Heaviside) and not sp.diff(part.args[0], x).has(x):
+                if _linear(part.args[0], x):
                     found[(x, part.args[0])] = None
     return list(found)[:_MOST_SURFACES]
+
+
+def _linear(p: sp.Expr, x: sp.Symbol) -> bool:
+    return not p.has(sp.Abs, sp.sign, sp.Heaviside) and not sp.diff(p, x).has(x)
+
+
+def _of_functions(root: sp.Expr) -> bool:
+    """Whether a root is of functions, which may be squares of others: 1 - cos x."""
+    return bool(root.args) and any(f.free_symbols for f in root.args[0].atoms(sp.Function, sp.Pow) if not _whole(f))
+
+
+def _of_symbols(part: sp.Expr) -> bool:
+    return not _whole(part) and bool(part.args[0].free_symbols)
+
+
+def _whole(part: sp.Expr) -> bool:
+    return bool(part.is_Pow and part.exp.is_Integer)
 
 
 def _beside(

@@ -68,7 +68,11 @@ def friction_part(what: str, answer: FrictionAnswer) -> Part:
         return Part(what, "passive", answer.grade, f"the {what} never gives energy: {answer.how}")
     if answer.dissipative is False:
         return Part(what, "active", answer.grade, f"the {what} gives energy: {answer.how}")
-    condition = f"if and only if {' and '.join(answer.conditions)}" if answer.conditions else None
+    if not answer.conditions:
+        return Part(what, "undecided", None, f"the {what}: {answer.how}")
+    # minors above zero leave out matrices that are singular and dissipative all the same
+    needed = all(">=" in condition for condition in answer.conditions)
+    condition = f"{'if and only if' if needed else 'if'} {' and '.join(answer.conditions)}"
     return Part(what, "undecided", None, f"the {what}: {answer.how}", condition)
 
 
@@ -90,7 +94,8 @@ def wrench_part(answer: WrenchAnswer) -> Part:
 def verdict_of(parts: Sequence[Part]) -> tuple[Verdict, Grade | None]:
     """Of a whole law: what is certainly wrong with one part is wrong with it; passive if all parts are.
 
-    A law without parts that could give energy is passive.
+    A law without parts that could give energy is passive. One that is so at the samples only is not called passive:
+    what was not met there may still give energy.
     """
     for verdict in ("active", "driven"):
         grades = [part.grade for part in parts if part.verdict == verdict]
@@ -98,6 +103,8 @@ def verdict_of(parts: Sequence[Part]) -> tuple[Verdict, Grade | None]:
             return verdict, max((g for g in grades if g), key=GRADES.index, default=None)
     if any(part.verdict == "undecided" for part in parts):
         return "undecided", None
+    if any(part.grade == "sampled" for part in parts):
+        return "undecided", "sampled"
     return "passive", min((part.grade for part in parts if part.grade), key=GRADES.index, default="proved")
 
 

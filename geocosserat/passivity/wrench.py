@@ -17,13 +17,14 @@ from typing import Any, Final
 import sympy as sp
 
 from geocosserat.derivation.notation import symbol
+from geocosserat.model.expressions import symbols
 from geocosserat.model.law import Law
 from geocosserat.passivity.balls import precision
 from geocosserat.passivity.conditions import Conditions, conditions
 from geocosserat.passivity.configuration import CAYLEY, ConfigurationLoop, cayley
 from geocosserat.passivity.points import enclosure
 from geocosserat.passivity.potential import Potential, potential
-from geocosserat.passivity.regular import Singular, may_step, singular_factors, symbols_of
+from geocosserat.passivity.regular import Singular, factors, may_step, singular_factors, symbols_of
 from geocosserat.passivity.vanish import Answer, Grade, vanishes
 from geocosserat.passivity.wrench_form import THETA, Form, brackets, continuous, form_of, known_factors, over_a_turn
 from geocosserat.passivity.wrench_loop import Worker, coordinates_at, near_zero, outward
@@ -80,8 +81,9 @@ class WrenchAnswer:
         """In words: when closed, when exact."""
         parts = (("closed", self.closed_if), ("exact", self.exact_if))
         joined = {
-            word: f"{word} {'if and only if' if c.exact else 'if'} {c}" for word, c in parts if c is not None
-        }
+            word: f"{word} {'if and only if' if c.exact else 'if'} {c}"
+            for word, c in parts if c is not None and (c.alternatives or c.exact)
+        }  # fmt: skip
         if len(joined) == 2 and self.closed_if == self.exact_if and self.exact_if is not None:
             return (f"closed and exact {'if and only if' if self.exact_if.exact else 'if'} {self.exact_if}",)
         return tuple(joined.values())
@@ -96,7 +98,27 @@ def wrench_answer(law: Law) -> WrenchAnswer | None:
     if form is None:
         return None
     answer = _decided(form)
-    return replace(answer, assumptions=(_COUNTS,)) if form.counted else answer
+    return replace(_counted(form, answer), assumptions=(_COUNTS,)) if form.counted else answer
+
+
+def _counted(form: Form, answer: WrenchAnswer) -> WrenchAnswer:
+    """Theta counts turns, but for some values of open parameters it may be an angle: is the law exact for them too?"""
+    turned = [over_a_turn(e) for e in form.components]
+    opened = {x.name for e in turned for x in e.free_symbols} & set(form.opened)
+    if not opened or answer.exact is not True:
+        return answer
+    found = conditions(turned, opened, form.positive)
+    for alternative in () if found is None else found.alternatives:
+        bound = {a: b for a, b in alternative if a.is_Symbol}
+        components = tuple(sp.sympify(e.subs(bound), strict=True) for e in form.components)
+        part = _closed(replace(form, components=components, counted=False), Answer(True, "proved", ""), False)
+        if len(bound) < len(alternative) or part.exact is not True:
+            break
+    else:
+        if found is not None and found.exact:
+            return answer
+    how = f"{answer.how}; but for some values of {', '.join(sorted(opened))} theta may be an angle"
+    return replace(answer, exact=None, how=how)
 
 
 def _decided(form: Form) -> WrenchAnswer:
@@ -151,8 +173,9 @@ def _conditional(
             exact_alternatives += [(*alternative, *more) for more in inner.exact_if.alternatives]
         elif inner.exact is None:
             surely = False
-    exact_if = Conditions(tuple(exact_alternatives), necessary and surely) if surely or exact_alternatives else None
-    never = exact_if is not None and exact_if.exact and not exact_if.alternatives
+    # none found says that being closed, if it is, was not seen to be enough
+    exact_if = Conditions(tuple(exact_alternatives), necessary and surely)
+    never = exact_if.exact and not exact_if.alternatives
     return WrenchAnswer(
         None, False if never else None, "proved" if found.exact else None, f"not closed for all values: {closed.how}",
         closed_if=found, exact_if=exact_if, potential=energies[0] if len(energies) == 1 else None,
@@ -172,6 +195,9 @@ def _closed(form: Form, closed: Answer, witnesses: bool = True) -> WrenchAnswer:
     if form.steps and jumps:
         base = replace(base, closed=None, potential=None, how=f"{base.how}, beside its steps")
         return _tried(form, base, witnesses, "no continuous potential was found across the steps")
+    if form.steps and _stays_on_steps(form):
+        base = replace(base, closed=None, potential=None, how=f"{base.how}, beside its steps")
+        return _tried(form, base, witnesses, "on a step itself the wrench may be other than the mean of both sides")
     if found is not None:
         base = replace(base, grade=_least(closed.grade, found.answer.grade))
         if form.holes and not singular_factors(found.energy, symbols_of(group)) <= known_factors(form):
@@ -195,6 +221,20 @@ def _closed(form: Form, closed: Answer, witnesses: bool = True) -> WrenchAnswer:
     return _tried(form, base, witnesses, "no potential was found, and the work over a full turn is not known")
 
 
+def _stays_on_steps(form: Form) -> bool:
+    """Whether a step is squared, or of a square: at zero, where it is one half, that is not the mean of both sides."""
+    pose = set(symbols_of(form.group))
+    for e in form.components:
+        for step in e.atoms(sp.Heaviside):
+            inside, one = step.args[0], sp.Dummy()
+            if not inside.free_symbols & pose:
+                continue
+            marked = e.xreplace({step: one})
+            if any(n % 2 == 0 for n in factors(inside).values()) or sp.diff(marked, one, 2) != 0:
+                return True
+    return False
+
+
 def _turned(form: Form, base: WrenchAnswer, found: Potential, witnesses: bool) -> WrenchAnswer:
     """In the plane: the potential may change over a full turn."""
     loss = over_a_turn(found.energy)
@@ -208,6 +248,8 @@ def _turned(form: Form, base: WrenchAnswer, found: Potential, witnesses: bool) -
         return _tried(form, base, witnesses, f"the work over a full turn is not decided: {zero.how}")
     opened = {x.name for x in work.free_symbols} & set(form.opened)
     witness = _witness(form, zero) if witnesses else None
+    if witness is None and any("theta" in symbols(s.zero) for s in form.holes):
+        return replace(base, how=f"{base.how}; exact: not decided, the law may have no value somewhere on a full turn")
     if not opened:
         period = Period(words, str(work))
         if not work.free_symbols:
