@@ -85,7 +85,7 @@ class Check:
         """What was taken for granted, each once."""
         found = [*ASSUMED, *self._prestress()]
         if self.law.energy is not None and steps(self.law.energy):
-            found.append("the stress is the gradient of the energy beside its steps: where the energy jumps, that is lost")
+            found.append("the stress is the gradient of the energy beside its steps: a jump of the energy is not in it")
         for answer in (self.viscous, self.friction, self.wrench, self.stability, self.symmetry):
             found += answer.assumptions if answer else ()
         return tuple(dict.fromkeys(found))
@@ -228,7 +228,8 @@ def check(law: Law, brief: bool = False) -> Check:
         except (MemoryError, RecursionError):
             raise
         except Exception as error:  # of a question that meets what nobody thought of: no answer, and no verdict
-            failed[what] = str(error) if isinstance(error, ExpressionError) else f"{type(error).__name__}: {error}"
+            foreseen = isinstance(error, ExpressionError | TypeError)
+            failed[what] = str(error) if foreseen else f"{type(error).__name__}: {error}"
             return None
 
     stress = asked("stress", check_stress) if law.stress is not None else None

@@ -101,10 +101,8 @@ def verdict_of(parts: Sequence[Part]) -> tuple[Verdict, Grade | None]:
         grades = [part.grade for part in parts if part.verdict == verdict]
         if grades:
             return verdict, max((g for g in grades if g), key=GRADES.index, default=None)
-    if any(part.verdict == "undecided" for part in parts):
+    if any(part.verdict == "undecided" or part.grade == "sampled" for part in parts):
         return "undecided", None
-    if any(part.grade == "sampled" for part in parts):
-        return "undecided", "sampled"
     return "passive", min((part.grade for part in parts if part.grade), key=GRADES.index, default="proved")
 
 

@@ -49,8 +49,14 @@ def test_the_worst_part_decides_in_any_order(verdicts: tuple[Verdict, ...]) -> N
     assert verdict_of([part(v) for v in verdicts])[0] == expected
 
 
-@pytest.mark.parametrize("first", GRADES)
-@pytest.mark.parametrize("second", GRADES)
+@pytest.mark.parametrize("other", GRADES)
+def test_what_is_passive_at_samples_only_is_undecided(other: Grade) -> None:
+    """What no sample met may give energy all the same."""
+    assert verdict_of([part("passive", "sampled"), part("passive", other)]) == ("undecided", None)
+
+
+@pytest.mark.parametrize("first", GRADES[1:])
+@pytest.mark.parametrize("second", GRADES[1:])
 def test_passive_is_as_certain_as_its_least_certain_part(first: Grade, second: Grade) -> None:
     """All parts must be passive, so the weakest grade counts."""
     assert verdict_of([part("passive", first), part("passive", second)]) == (
@@ -139,7 +145,9 @@ def test_friction_is_passive_only_if_it_never_gives(answer: FrictionAnswer, verd
 def test_conditions_of_friction_hold_together() -> None:
     """All of them are needed."""
     found = friction_part("friction", FrictionAnswer(None, None, "so", conditions=("a > 0", "b > 0")))
-    assert conditions_of([found]) == ("passive if and only if a > 0 and b > 0",)
+    assert conditions_of([found]) == ("passive if a > 0 and b > 0",)  # what is singular may be dissipative too
+    found = friction_part("friction", FrictionAnswer(None, None, "so", conditions=("a >= 0", "b >= 0")))
+    assert conditions_of([found]) == ("passive if and only if a >= 0 and b >= 0",)
 
 
 @pytest.mark.parametrize(

@@ -339,8 +339,8 @@ LOSSES: dict[str, Known] = {
     "friction in space": Known(
         friction([[3 if i == j else 0.5 if i < j else 0.25 for j in range(6)] for i in range(6)], "spatial"),
         "passive", "strictly dominant diagonal"),
-    "friction along the rod": Known(friction([[1, "u", 0], ["u", 1, 0], [0, 0, 1]]), "passive",
-                                    "definite for 0 <= u < 1, semidefinite at the end", grade="sampled"),
+    "friction along the rod": Known(friction([[1, "u", 0], ["u", 1, 0], [0, 0, 1]]), "undecided",
+                                    "definite for 0 <= u < 1, semidefinite at the end: seen at samples", grade=None),
     "friction along the rod, definite": Known(friction([[1, "u/2", 0], ["u/2", 1, 0], [0, 0, 1]]), "passive",
                                               "definite for 0 <= u <= 1"),
     "friction with an open coupling": Known(
