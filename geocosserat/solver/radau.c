@@ -683,7 +683,6 @@ radau *radau_new(const method *m, int size, int quadratures, const double *const
     r->share = r->contraction = 1.0;
     memcpy(r->y, y, n * sizeof *y);
     memcpy(r->atol, atol, n * sizeof *atol);
-    rescale(r);
     return r;
 }
 
@@ -700,17 +699,50 @@ static double first_step(const radau *r)
     return speed * span * span > 1e-10 * size ? fmin(span, 0.01 * sqrt(fmax(size, 1e-10) / speed)) : 1e-3 * span;
 }
 
+/* Entries that constraints fix, made to fulfil them at the start: a linear system, since each constraint is linear in them.
+ * Returns 1 if it has no solution. */
+static int settle(radau *r)
+{
+    const int n = r->size, a = r->fixed;
+    const double *J = linearise(r, NOW);
+    double *N = r->matrix[0], *gap = r->room;
+    for (int i = 0; i < a; ++i) {
+        gap[i] = r->slope[r->fixes[i]];
+        for (int j = 0; j < a; ++j)
+            N[j * a + i] = J[(size_t)r->fixes[i] * n + r->fixes[j]];
+    }
+    r->of = PAST; /* its other parts change with what is solved for here */
+    if (factor(a, N, r->inner_pivots))
+        return 1;
+    solve(a, N, r->inner_pivots, gap);
+    for (int i = 0; i < a; ++i)
+        r->y[r->fixes[i]] -= gap[i];
+    return 0;
+}
+
+/* To be called once, before all else: the state at the start, as the constraints have it, into out [size]. Returns a number
+ * below zero where there is none. */
+int radau_begin(radau *r, double *out)
+{
+    if (!evaluate(r, r->t, r->y, r->slope))
+        return NOT_FINITE;
+    if (r->fixed && settle(r))
+        return SINGULAR;
+    if (r->fixed && !evaluate(r, r->t, r->y, r->slope))
+        return SINGULAR;
+    rescale(r);
+    memcpy(out, r->y, r->size * sizeof *out);
+    return REACHED;
+}
+
 /* Goes on until t reaches `until`, never beyond `end`; the state there, between two steps if need be, into out [size].
  * Returns PAUSED before that if many steps were taken, and a number below zero where it cannot go on. */
 int radau_advance(radau *r, double until, double end, double *out)
 {
     const int n = r->size, S = r->m.stages;
     r->end = end;
-    if (r->h == 0.0) {
-        if (!evaluate(r, r->t, r->y, r->slope))
-            return NOT_FINITE;
+    if (r->h == 0.0)
         r->h = first_step(r);
-    }
     for (int taken = 0; r->t < until; ++taken) {
         if (taken == BREATH)
             return PAUSED;
