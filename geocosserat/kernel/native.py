@@ -162,15 +162,26 @@ class NativeRod:
     def functions(self) -> Functions:
         """Rate and dense Jacobian as an integrator takes them that calls C directly."""
         if self._functions is None:
-            ffi, lib = self._ffi, self._lib
-            problem = ffi.new("rod_problem *")
-            arrays = self._space() | {"whole": np.empty(self._dense_room())}
-            self._point(problem, arrays)
+            ffi, lib, n, b = self._ffi, self._lib, self._elements, self._lib.rod_block()
+            pairs = n * lib.rod_pair()
+            sizes = {
+                "lower": pairs,
+                "diagonal": n * b * b,
+                "upper": pairs,
+                "border": lib.rod_border(),
+                "scratch": lib.rod_scratch(),
+                "whole": self._dense_room(),
+            }
+            room = np.empty(sum(sizes.values()))  # at once: one array for each would take longer than a few steps
+            problem, at = ffi.new("rod_problem *"), self._at(room)
+            for name, size in sizes.items():
+                setattr(problem, name, at)
+                at += size
             problem.r, problem.size = self._rod, self.size
             data, rate, jacobian = (
                 int(ffi.cast("uintptr_t", thing)) for thing in (problem, lib.problem_slope, lib.problem_dense)
             )
-            kept = problem, arrays, self._rod, self._kept, lib
+            kept = problem, room, self._rod, self._kept, lib
             self._functions = Functions(data, rate, jacobian, ENERGIES, keep=kept)
         return self._functions
 
