@@ -51,25 +51,30 @@ def integrate(
     tolerance[:] = atol
     chosen = _chosen(method, kernel)
 
-    if chosen is not radau_native:  # which sees to its start by itself
-        rate = np.empty_like(start)
-        kernel.rate(float(times[0]), start, rate)
-        if not np.isfinite(rate).all():
-            return Trajectory(times[:1].copy(), start[None].copy(), 1, 0, 0, False, "the rate is not finite at the start")
-        try:
-            start = consistent(kernel, float(times[0]), start, blocks=True, gap=rate)
-        except np.linalg.LinAlgError:
-            return Trajectory(times[:1].copy(), start[None].copy(), 1, 0, 0, False, "the constraints have no solution")
-
     def piece(y: Array, instants: Array, told: Progress, noted: Frame) -> Trajectory:
         return chosen(kernel, y, instants, rtol, tolerance, told, noted)
 
     with np.errstate(all="ignore"):  # what goes wrong becomes the reason of the trajectory
-        if chosen is radau_native:
+        if chosen is radau_native:  # begins where the constraints hold by itself, and warns of nothing
             return in_pieces(piece, start, times, switches, progress, frame)
+        begun = _begun(kernel, float(times[0]), start)
+        if isinstance(begun, str):
+            return Trajectory(times[:1].copy(), start[None].copy(), 1, 0, 0, False, begun)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", RuntimeWarning)
-            return in_pieces(piece, start, times, switches, progress, frame)
+            return in_pieces(piece, begun, times, switches, progress, frame)
+
+
+def _begun(kernel: Kernel, t: float, start: Array) -> Array | str:
+    """The start as the constraints have it, or why there is none."""
+    rate = np.empty_like(start)
+    kernel.rate(t, start, rate)
+    if not np.isfinite(rate).all():
+        return "the rate is not finite at the start"
+    try:
+        return consistent(kernel, t, start, blocks=True, gap=rate)
+    except np.linalg.LinAlgError:
+        return "the constraints have no solution"
 
 
 def _chosen(method: str, kernel: Kernel) -> Integrator:

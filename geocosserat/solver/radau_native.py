@@ -118,7 +118,7 @@ def radau_native(
 ) -> Trajectory:
     """Integrates a NativeKernel from times[0] through all of `times`; see `integrate`.
 
-    It begins by itself where the constraints hold: the start needs no value for what they fix, nor a rate that is finite.
+    It begins where the constraints hold: the start needs no value for what they fix.
     """
     ffi, lib, numbers = _library()
     functions = cast(NativeKernel, kernel).functions()
