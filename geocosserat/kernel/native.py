@@ -5,6 +5,7 @@ cffi hands an array's address to C in a third of the time that ctypes needs (ben
 
 from collections.abc import Mapping
 from functools import lru_cache
+from itertools import accumulate
 from pathlib import Path
 from typing import Any
 
@@ -78,6 +79,15 @@ def _library(path: Path) -> Any:
     return _interface().dlopen(str(path))
 
 
+@lru_cache(maxsize=64)
+def _of_library(path: Path) -> tuple[int, int, int, int, int, int]:
+    """What is the same for all rods of a library, and takes a while to ask for: numbers of a block, of a pair, of the
+    border and of scratch space; addresses of the rate and of the dense Jacobian."""
+    ffi, lib = _interface(), _library(path)
+    rate, dense = (int(ffi.cast("uintptr_t", thing)) for thing in (lib.problem_slope, lib.problem_dense))
+    return lib.rod_block(), lib.rod_pair(), lib.rod_border(), lib.rod_scratch(), rate, dense
+
+
 class NativeRod:
     """The kernel of a semi-discrete rod in C. One call at a time: it owns its work space."""
 
@@ -86,6 +96,7 @@ class NativeRod:
     def __init__(self, library: Path, rod: SemiDiscrete) -> None:
         self._ffi = ffi = _interface()
         self._lib = _library(library)
+        self._shared = _of_library(library)
         self._double, self._int = ffi.typeof("double[]"), ffi.typeof("int[]")
         self.size = len(rod.state)
         self.algebraic = rod.algebraic
@@ -162,16 +173,19 @@ class NativeRod:
     def functions(self) -> Functions:
         """Rate and dense Jacobian as an integrator takes them that calls C directly."""
         if self._functions is None:
-            ffi, lib = self._ffi, self._lib
-            problem = ffi.new("rod_problem *")
-            arrays = self._space() | {"whole": np.empty(self._dense_room())}
-            self._point(problem, arrays)
-            problem.r, problem.size = self._rod, self.size
-            data, rate, jacobian = (
-                int(ffi.cast("uintptr_t", thing)) for thing in (problem, lib.problem_slope, lib.problem_dense)
-            )
-            kept = problem, arrays, self._rod, self._kept, lib
-            self._functions = Functions(data, rate, jacobian, ENERGIES, keep=kept)
+            ffi, n = self._ffi, self._elements
+            block, pair, border, scratch, rate, dense = self._shared
+            sizes = (n * pair, n * block * block, n * pair, border, scratch)
+            ends = list(accumulate(sizes))
+            room = np.empty(ends[-1] + self._dense_room())  # at once: an array for each would take as long as two steps
+            at = self._at(room)
+            lower, diagonal, upper, border_at, scratch_at, whole = (at + end for end in (0, *ends))
+            problem = ffi.new("rod_problem *", {
+                "r": self._rod, "size": self.size, "lower": lower, "diagonal": diagonal, "upper": upper,
+                "border": border_at, "scratch": scratch_at, "whole": whole,
+            })  # fmt: skip
+            kept = problem, room, self._rod, self._kept, self._lib
+            self._functions = Functions(int(ffi.cast("uintptr_t", problem)), rate, dense, ENERGIES, keep=kept)
         return self._functions
 
     def callbacks(self, vector: int, current: int) -> Callbacks:

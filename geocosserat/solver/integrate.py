@@ -47,14 +47,6 @@ def integrate(
         raise ValueError(f"expected a method out of {', '.join(METHODS)}, found {method!r}")
     if not np.isfinite(start).all():
         raise ValueError("expected a finite initial state, found infinities or NaN; check the start of the scene")
-    rate = np.empty_like(start)
-    kernel.rate(float(times[0]), start, rate)
-    if not np.isfinite(rate).all():
-        return Trajectory(times[:1].copy(), start[None].copy(), 1, 0, 0, False, "the rate is not finite at the start")
-    try:
-        begun = consistent(kernel, float(times[0]), start, blocks=True, gap=rate)
-    except np.linalg.LinAlgError:
-        return Trajectory(times[:1].copy(), start[None].copy(), 1, 0, 0, False, "the constraints have no solution")
     tolerance = np.empty(start.shape)
     tolerance[:] = atol
     chosen = _chosen(method, kernel)
@@ -62,21 +54,40 @@ def integrate(
     def piece(y: Array, instants: Array, told: Progress, noted: Frame) -> Trajectory:
         return chosen(kernel, y, instants, rtol, tolerance, told, noted)
 
-    with np.errstate(all="ignore"), warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)  # what goes wrong becomes the reason of the trajectory
-        return in_pieces(piece, begun, times, switches, progress, frame)
+    with np.errstate(all="ignore"):  # what goes wrong becomes the reason of the trajectory
+        if chosen is radau_native:  # begins where the constraints hold by itself, and warns of nothing
+            return in_pieces(piece, start, times, switches, progress, frame)
+        begun = _begun(kernel, float(times[0]), start)
+        if isinstance(begun, str):
+            return Trajectory(times[:1].copy(), start[None].copy(), 1, 0, 0, False, begun)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", RuntimeWarning)
+            return in_pieces(piece, begun, times, switches, progress, frame)
+
+
+def _begun(kernel: Kernel, t: float, start: Array) -> Array | str:
+    """The start as the constraints have it, or why there is none."""
+    rate = np.empty_like(start)
+    kernel.rate(t, start, rate)
+    if not np.isfinite(rate).all():
+        return "the rate is not finite at the start"
+    try:
+        return consistent(kernel, t, start, blocks=True, gap=rate)
+    except np.linalg.LinAlgError:
+        return "the constraints have no solution"
 
 
 def _chosen(method: str, kernel: Kernel) -> Integrator:
     """The integrator of that name. SUNDIALS is called directly where kernel and installation allow it: CVODE, or IDA
     where there are constraints. Radau is our own for compiled kernels, scipy's for others."""
-    constrained, native = bool(kernel.algebraic.any()), is_native(type(kernel))
+    native = is_native(type(kernel))
+    if method == "radau" and native and kernel.size <= LARGEST:
+        return radau_native
+    constrained = bool(kernel.algebraic.any())
     if method == "cvode" and native:
         library = sundials("IDA" if constrained else "CVode")
         if library is not None:
             return partial(ida_native if constrained else cvode_native, library)
-    if method == "radau" and native and kernel.size <= LARGEST:
-        return radau_native
     found = _integrator("cvode", "cvode") if method == "cvode" else _integrator("scipy_methods", method)
     return reduced(found) if constrained else found
 

@@ -55,16 +55,30 @@ typedef struct radau {
     int finite;                /* whether the last rate was */
     int of;                    /* where the Jacobian is from: PAST, MIDDLE or NOW */
     int factored;              /* whether the factors fit it and h */
-    int *moves, *fixes;        /* which entries those are */
+    int *order;                /* of the entries here: first what moves, then what constraints fix, then quadratures */
+    int ordered;               /* whether the problem has them in this order too */
+    int width;                 /* of the matrices below: a multiple of four where inverses are made, see SMALL */
     int *inner_pivots, *pivots[PAIRS + 1];
     double *numbers;           /* room for all that follows */
     double *y, *slope, *atol, *scale; /* the state, its rate, tolerances, one over what an error may be */
     double *Z, *last_Z, *F, *change;  /* [stages][size] displacements, now and in the last step; rates; Newton's change */
     double *trial, *error;
+    double *asked, *told;                             /* a state and its rate in the order of the problem */
     double *schur, *coupling, *feed, *answers, *both; /* of the Jacobian, see `condense` */
-    double *matrix[PAIRS + 1];                        /* factors: a real matrix, then complex ones */
-    double *right, *sides, *found, *room, *picked;    /* of one linear system, see `solve_part` */
+    double *matrix[PAIRS + 1];                        /* factors, or inverses: a real matrix, then complex ones */
+    double *right, *room, *made;                      /* of linear systems, see `newton` */
 } radau;
+
+/* Of what moves, up to as many entries get the inverse of their matrices, padded to a multiple of four: its loops have no
+ * remainders and wait for nothing, which takes a third of the time of factors whose columns are as short as that. */
+enum { SMALL = 16 };
+
+/* Before a short inner loop: GCC would unroll it at once, and then not vectorise it. */
+#if defined(__GNUC__) && !defined(__clang__)
+#define ROLLED _Pragma("GCC unroll 1")
+#else
+#define ROLLED
+#endif
 
 /* The step over the method's eigenvalue, re + i im. */
 static void share_of(const radau *r, int k, double *re, double *im)
@@ -126,21 +140,34 @@ static void solve(int n, const double *A, const int *pivots, double *x)
     }
 }
 
+/* y -= f B for `count` rows of B [count][n], four at a time: y is then read and written a quarter as often. The factors f lie
+ * so far apart. */
+static void subtract_rows(int n, int count, const double *f, int apart, const double *B, double *restrict y)
+{
+    int k = 0;
+    for (; k + 4 <= count; k += 4, f += 4 * (size_t)apart) {
+        const double *restrict a = B + (size_t)k * n, *restrict b = a + n, *restrict c = b + n, *restrict d = c + n;
+        const double p = f[0], q = f[apart], g = f[2 * (size_t)apart], h = f[3 * (size_t)apart];
+        for (int j = 0; j < n; ++j)
+            y[j] -= p * a[j] + q * b[j] + g * c[j] + h * d[j];
+    }
+    for (; k < count; ++k, f += apart)
+        subtract(n, *f, B + (size_t)k * n, y);
+}
+
 /* Solves for as many columns as `sides`, which are stored by rows: B [n][sides]. */
 static void solve_rows(int n, const double *A, const int *pivots, int sides, double *B)
 {
     for (int k = 0; k < n; ++k)
         for (int j = 0; j < sides; ++j)
             exchange(B + (size_t)k * sides + j, B + (size_t)pivots[k] * sides + j);
-    for (int k = 0; k < n; ++k)
-        for (int i = k + 1; i < n; ++i)
-            subtract(sides, A[(size_t)k * n + i], B + (size_t)k * sides, B + (size_t)i * sides);
-    for (int k = n - 1; k >= 0; --k) {
-        double *row = B + (size_t)k * sides;
+    for (int i = 1; i < n; ++i)
+        subtract_rows(sides, i, A + i, n, B, B + (size_t)i * sides);
+    for (int i = n - 1; i >= 0; --i) {
+        double *row = B + (size_t)i * sides;
+        subtract_rows(sides, n - 1 - i, A + (size_t)(i + 1) * n + i, n, row + sides, row);
         for (int j = 0; j < sides; ++j)
-            row[j] *= A[(size_t)k * n + k];
-        for (int i = 0; i < k; ++i)
-            subtract(sides, A[(size_t)k * n + i], row, B + (size_t)i * sides);
+            row[j] *= A[(size_t)i * n + i];
     }
 }
 
@@ -212,6 +239,163 @@ static void solve_complex(int n, const double *A, const int *pivots, double *x)
     }
 }
 
+/* A [n][n] becomes its inverse, by Gauss and Jordan with partial pivoting. Returns 1 if there is none. */
+static inline int invert_of(const int n, double *A)
+{
+    int pivots[SMALL];
+    for (int k = 0; k < n; ++k) {
+        double own[SMALL], size = 0.0;
+        int best = k;
+        for (int i = 0; i < n; ++i)
+            own[i] = A[k * n + i];
+        for (int i = k; i < n; ++i)
+            if (fabs(own[i]) > size) {
+                size = fabs(own[i]);
+                best = i;
+            }
+        if (!(size > 0.0))
+            return 1;
+        pivots[k] = best;
+        const double f = 1.0 / own[best];
+        own[best] = own[k];
+        own[k] = 0.0;
+        for (int j = 0; j < n; ++j) {
+            double *restrict column = A + j * n;
+            const double x = f * column[best];
+            column[best] = column[k];
+            ROLLED
+            for (int i = 0; i < n; ++i)
+                column[i] -= x * own[i];
+            column[k] = x;
+        }
+        for (int i = 0; i < n; ++i)
+            A[k * n + i] = -f * own[i];
+        A[k * n + k] = f;
+    }
+    for (int k = n - 1; k >= 0; --k)
+        if (pivots[k] != k)
+            for (int i = 0; i < n; ++i)
+                exchange(A + k * n + i, A + pivots[k] * n + i);
+    return 0;
+}
+
+/* The same for a complex matrix. */
+static inline int invert_complex_of(const int n, double *A)
+{
+    int pivots[SMALL];
+    double *B = A + n * n;
+    for (int k = 0; k < n; ++k) {
+        double own[SMALL], also[SMALL], size = 0.0;
+        int best = k;
+        for (int i = 0; i < n; ++i) {
+            own[i] = A[k * n + i];
+            also[i] = B[k * n + i];
+        }
+        for (int i = k; i < n; ++i)
+            if (fabs(own[i]) + fabs(also[i]) > size) {
+                size = fabs(own[i]) + fabs(also[i]);
+                best = i;
+            }
+        if (!(size > 0.0))
+            return 1;
+        pivots[k] = best;
+        const double square = own[best] * own[best] + also[best] * also[best];
+        const double f = own[best] / square, g = -also[best] / square;
+        own[best] = own[k];
+        also[best] = also[k];
+        own[k] = also[k] = 0.0;
+        for (int j = 0; j < n; ++j) {
+            double *restrict re = A + j * n, *restrict im = B + j * n;
+            const double x = f * re[best] - g * im[best], y = f * im[best] + g * re[best];
+            re[best] = re[k];
+            im[best] = im[k];
+            ROLLED
+            for (int i = 0; i < n; ++i) {
+                re[i] -= x * own[i] - y * also[i];
+                im[i] -= x * also[i] + y * own[i];
+            }
+            re[k] = x;
+            im[k] = y;
+        }
+        for (int i = 0; i < n; ++i) {
+            A[k * n + i] = g * also[i] - f * own[i];
+            B[k * n + i] = -f * also[i] - g * own[i];
+        }
+        A[k * n + k] = f;
+        B[k * n + k] = g;
+    }
+    for (int k = n - 1; k >= 0; --k)
+        if (pivots[k] != k)
+            for (int i = 0; i < n; ++i) {
+                exchange(A + k * n + i, A + pivots[k] * n + i);
+                exchange(B + k * n + i, B + pivots[k] * n + i);
+            }
+    return 0;
+}
+
+/* x becomes A x. */
+static inline void apply_of(const int n, const double *restrict A, double *restrict x)
+{
+    double y[SMALL] = {0.0};
+    for (int j = 0; j < n; ++j)
+        for (int i = 0; i < n; ++i)
+            y[i] += x[j] * A[j * n + i];
+    for (int i = 0; i < n; ++i)
+        x[i] = y[i];
+}
+
+static inline void apply_complex_of(const int n, const double *restrict A, double *restrict x)
+{
+    const double *restrict B = A + n * n;
+    double re[SMALL] = {0.0}, im[SMALL] = {0.0};
+    for (int j = 0; j < n; ++j)
+        ROLLED
+        for (int i = 0; i < n; ++i) {
+            re[i] += x[j] * A[j * n + i] - x[n + j] * B[j * n + i];
+            im[i] += x[j] * B[j * n + i] + x[n + j] * A[j * n + i];
+        }
+    for (int i = 0; i < n; ++i) {
+        x[i] = re[i];
+        x[n + i] = im[i];
+    }
+}
+
+/* The same by widths known to the compiler. */
+static int invert(int n, int complex, double *A)
+{
+    switch (n) {
+    case 4: return complex ? invert_complex_of(4, A) : invert_of(4, A);
+    case 8: return complex ? invert_complex_of(8, A) : invert_of(8, A);
+    case 12: return complex ? invert_complex_of(12, A) : invert_of(12, A);
+    default: return complex ? invert_complex_of(16, A) : invert_of(16, A);
+    }
+}
+
+static void apply(int n, int complex, const double *A, double *x)
+{
+    switch (n) {
+    case 4: complex ? apply_complex_of(4, A, x) : apply_of(4, A, x); break;
+    case 8: complex ? apply_complex_of(8, A, x) : apply_of(8, A, x); break;
+    case 12: complex ? apply_complex_of(12, A, x) : apply_of(12, A, x); break;
+    default: complex ? apply_complex_of(16, A, x) : apply_of(16, A, x); break;
+    }
+}
+
+/* The sum of squares, in lanes, since a single sum would wait for every addition. */
+static double squares(int n, const double *restrict x, const double *restrict scale)
+{
+    double lane[8] = {0.0}, total = 0.0;
+    int i = 0;
+    for (; i + 8 <= n; i += 8)
+        for (int k = 0; k < 8; ++k)
+            lane[k] += (x[i + k] * scale[i + k]) * (x[i + k] * scale[i + k]);
+    for (; i < n; ++i)
+        total += (x[i] * scale[i]) * (x[i] * scale[i]);
+    for (int k = 0; k < 8; ++k)
+        total += lane[k];
+    return total;
+}
+
 /* y += A x for A [columns][rows], four columns at a time: y is then read and written a quarter as often. */
 static void multiply(int rows, int columns, const double *A, const double *x, double *restrict y)
 {
@@ -234,36 +418,35 @@ static const double *linearise(radau *r, int where)
     r->jacobians += 1;
     r->factored = 0;
     r->of = where;
-    if (where == NOW)
-        return r->jacobian(r->data, r->t, r->y);
     for (int i = 0; i < r->size; ++i)
-        r->trial[i] = r->y[i] + r->Z[middle * r->size + i];
-    return r->jacobian(r->data, r->t + r->m.node[middle] * r->h, r->trial);
+        r->asked[r->order[i]] = where == NOW ? r->y[i] : r->y[i] + r->Z[middle * r->size + i];
+    return r->jacobian(r->data, where == NOW ? r->t : r->t + r->m.node[middle] * r->h, r->asked);
 }
 
 /* What the Jacobian says of what moves, once the constraints are solved for. With J = [[M, C], [K, N]], K and N of the
- * constraints: feed = C / N above 1 / N, answers = -N \ K, schur = M - C N \ K. Returns 1 if they cannot be. */
+ * constraints: feed = -C / N above -1 / N, answers = -N \ K, schur = M - C N \ K. Returns 1 if they cannot be. */
 static int condense(radau *r, int where)
 {
     const int n = r->size, d = r->moving, a = r->fixed;
+    const int *moves = r->order, *fixes = r->order + d;
     const double *J = linearise(r, where);
     for (int i = 0; i < d; ++i) {
-        const double *row = J + (size_t)r->moves[i] * n;
+        const double *row = J + (size_t)moves[i] * n;
         for (int j = 0; j < d; ++j)
-            r->schur[j * d + i] = row[r->moves[j]];
+            r->schur[j * d + i] = row[moves[j]];
         for (int j = 0; j < a; ++j)
-            r->coupling[j * d + i] = row[r->fixes[j]];
+            r->coupling[j * d + i] = row[fixes[j]];
     }
     if (!a)
         return 0;
     double *N = r->matrix[0], *both = r->both; /* [K, 1] by rows, so that all columns are solved for at once */
     memset(both, 0, (size_t)a * (d + a) * sizeof *both);
     for (int i = 0; i < a; ++i) {
-        const double *row = J + (size_t)r->fixes[i] * n;
+        const double *row = J + (size_t)fixes[i] * n;
         for (int j = 0; j < a; ++j)
-            N[j * a + i] = row[r->fixes[j]];
+            N[j * a + i] = row[fixes[j]];
         for (int j = 0; j < d; ++j)
-            both[i * (d + a) + j] = row[r->moves[j]];
+            both[i * (d + a) + j] = row[moves[j]];
         both[i * (d + a) + d + i] = 1.0;
     }
     if (factor(a, N, r->inner_pivots))
@@ -272,14 +455,12 @@ static int condense(radau *r, int where)
     memset(r->feed, 0, (size_t)a * (d + a) * sizeof *r->feed);
     for (int i = 0; i < a; ++i) {
         for (int j = 0; j < d; ++j)
-            r->answers[j * a + i] = both[i * (d + a) + j];
+            r->answers[j * a + i] = -both[i * (d + a) + j];
         for (int j = 0; j < a; ++j)
-            r->feed[j * (d + a) + d + i] = both[i * (d + a) + d + j];
+            r->feed[j * (d + a) + d + i] = -both[i * (d + a) + d + j];
     }
     for (int j = 0; j < a; ++j)
         multiply(d, a, r->coupling, r->feed + j * (d + a) + d, r->feed + j * (d + a));
-    for (int i = 0; i < a * d; ++i)
-        r->answers[i] = -r->answers[i];
     for (int j = 0; j < d; ++j)
         multiply(d, a, r->coupling, r->answers + j * a, r->schur + j * d);
     return 0;
@@ -291,61 +472,63 @@ static int renew(radau *r, int where)
     return !(where == MIDDLE && r->last_h > 0.0 && !condense(r, MIDDLE)) && condense(r, NOW);
 }
 
-/* Factors  1 - g schur  for each g = h / eigenvalue. Returns 1 if one is singular. */
+/* Factors  1 - g schur  for each g = h / eigenvalue, or their inverses. Returns 1 if one is singular. */
 static int factor_all(radau *r)
 {
-    const int d = r->moving, count = d * d;
+    const int d = r->moving, w = r->width;
     for (int k = 0; k <= r->m.stages / 2; ++k) {
-        double *A = r->matrix[k], re, im;
+        double *A = r->matrix[k], *B = A + w * w, re, im;
         share_of(r, k, &re, &im);
-        for (int i = 0; i < count; ++i)
-            A[i] = -re * r->schur[i];
-        for (int i = 0; i < count && k; ++i)
-            A[count + i] = -im * r->schur[i];
-        for (int i = 0; i < d; ++i)
-            A[i * d + i] += 1.0;
-        if (k ? factor_complex(d, A, r->pivots[k]) : factor(d, A, r->pivots[0]))
+        if (w > d)
+            memset(A, 0, (k ? 2 : 1) * (size_t)w * w * sizeof *A);
+        for (int j = 0; j < d; ++j) {
+            for (int i = 0; i < d; ++i)
+                A[j * w + i] = -re * r->schur[j * d + i];
+            for (int i = 0; i < d && k; ++i)
+                B[j * w + i] = -im * r->schur[j * d + i];
+        }
+        for (int i = 0; i < w; ++i)
+            A[i * w + i] += 1.0;
+        if (d <= SMALL ? invert(w, k, A) : k ? factor_complex(d, A, r->pivots[k]) : factor(d, A, r->pivots[0]))
             return 1;
     }
     return 0;
 }
 
-/* Solves for one part of Newton's change. On entry `right` holds the sides of what moves, `sides` those of constraints; on
- * return `right` and `found` their unknowns. Complex ones: real parts, then imaginary ones. */
+/* Solves for one part of Newton's change of what moves, in `right` [width]; if it is complex, imaginary ones follow. */
 static void solve_part(radau *r, int k)
 {
-    const int d = r->moving, a = r->fixed, parts = k ? 2 : 1;
-    double *x = r->right, *room = r->room, re, im; /* room: [d + a], by parts */
-    share_of(r, k, &re, &im);
-    if (a) {
-        memset(room, 0, parts * (d + a) * sizeof *room);
-        for (int part = 0; part < parts; ++part)
-            multiply(d + a, a, r->feed, r->sides + part * a, room + part * (d + a));
-        for (int i = 0; i < d; ++i) {
-            x[i] += re * room[i] - (k ? im * room[d + a + i] : 0.0);
-            if (k)
-                x[d + i] += re * room[d + a + i] + im * room[i];
-        }
-    }
-    if (k)
-        solve_complex(d, r->matrix[k], r->pivots[k], x);
+    if (r->moving <= SMALL)
+        apply(r->width, k, r->matrix[k], r->right);
+    else if (k)
+        solve_complex(r->moving, r->matrix[k], r->pivots[k], r->right);
     else
-        solve(d, r->matrix[0], r->pivots[0], x);
-    for (int part = 0; part < parts && a; ++part) {
-        double *z = r->found + part * a;
-        memcpy(z, room + part * (d + a) + d, a * sizeof *z);
-        multiply(a, d, r->answers, x + part * d, z);
-    }
+        solve(r->moving, r->matrix[0], r->pivots[0], r->right);
 }
 
 /* The rate, and whether all of it is finite. */
 static int evaluate(radau *r, double t, const double *y, double *rate)
 {
-    double all = 0.0;
+    const int n = r->size;
+    double lane[8] = {0.0}, all = 0.0;
     r->rates += 1;
-    r->rate(r->data, t, y, rate);
-    for (int i = 0; i < r->size; ++i)
-        all += rate[i] - rate[i]; /* 0, or NaN */
+    if (r->ordered)
+        r->rate(r->data, t, y, rate);
+    else {
+        for (int i = 0; i < n; ++i)
+            r->asked[r->order[i]] = y[i];
+        r->rate(r->data, t, r->asked, r->told);
+        for (int i = 0; i < n; ++i)
+            rate[i] = r->told[r->order[i]];
+    }
+    int i = 0;
+    for (; i + 8 <= n; i += 8)
+        for (int k = 0; k < 8; ++k)
+            lane[k] += rate[i + k] - rate[i + k]; /* 0, or NaN */
+    for (; i < n; ++i)
+        all += rate[i] - rate[i];
+    for (int k = 0; k < 8; ++k)
+        all += lane[k];
     r->finite = all == 0.0;
     return r->finite;
 }
@@ -362,41 +545,98 @@ static int evaluate_stages(radau *r)
     return 1;
 }
 
+/* y += A x for A [columns][rows] and all stages, whose x and y are so far apart. */
+static inline void multiply_stages(const int S, int rows, int columns, const double *restrict A, const double *restrict x,
+                                   int next_x, double *restrict y, int next_y)
+{
+    int j = 0;
+    for (; j + 2 <= columns; j += 2) {
+        const double *restrict a = A + (size_t)j * rows, *restrict b = a + rows;
+        for (int s = 0; s < S; ++s) {
+            const double f = x[s * next_x + j], g = x[s * next_x + j + 1];
+            double *restrict own = y + s * next_y;
+            for (int i = 0; i < rows; ++i)
+                own[i] += f * a[i] + g * b[i];
+        }
+    }
+    for (; j < columns; ++j)
+        for (int s = 0; s < S; ++s)
+            subtract(rows, -x[s * next_x + j], A + (size_t)j * rows, y + s * next_y);
+}
+
 /* Newton's change of all stages into `change`, from rates F at displacements Z. */
+static inline void newton_of(radau *r, const int S)
+{
+    const int n = r->size, d = r->moving, a = r->fixed, w = r->width, next = a ? d + a : n;
+    const double *restrict F = r->F, *restrict Z = r->Z;
+    double *restrict x = r->right, *restrict change = r->change;
+    if (a) { /* the constraints are solved for: what moves then does so by itself */
+        double *made = r->made;
+        for (int s = 0; s < S; ++s) {
+            memcpy(made + s * next, F + s * n, d * sizeof *made);
+            memset(made + s * next + d, 0, a * sizeof *made);
+        }
+        multiply_stages(S, d + a, a, r->feed, F + d, n, made, next);
+        F = made;
+    }
+    for (int k = 0; k <= S / 2; ++k) {
+        double p[MOST_STAGES], q[MOST_STAGES], re, im;
+        share_of(r, k, &re, &im);
+        for (int s = 0; s < S; ++s) {
+            p[s] = r->m.row[k][s][0];
+            q[s] = r->m.row[k][s][1];
+        }
+        if (k)
+            for (int i = 0; i < d; ++i) {
+                double f = 0.0, g = 0.0, y = 0.0, z = 0.0;
+                for (int s = 0; s < S; ++s) {
+                    f += p[s] * F[s * next + i];
+                    g += q[s] * F[s * next + i];
+                    y += p[s] * Z[s * n + i];
+                    z += q[s] * Z[s * n + i];
+                }
+                x[i] = re * f - im * g - y;
+                x[w + i] = re * g + im * f - z;
+            }
+        else
+            for (int i = 0; i < d; ++i) {
+                double f = 0.0, y = 0.0;
+                for (int s = 0; s < S; ++s) {
+                    f += p[s] * F[s * next + i];
+                    y += p[s] * Z[s * n + i];
+                }
+                x[i] = re * f - y;
+            }
+        for (int i = d; i < w; ++i)
+            x[i] = x[w + i] = 0.0;
+        solve_part(r, k);
+        for (int s = 0; s < S; ++s) {
+            double *restrict own = change + s * n;
+            const double f = r->m.column[k][s][0], g = r->m.column[k][s][1];
+            if (k)
+                for (int i = 0; i < d; ++i)
+                    own[i] += f * x[i] - g * x[w + i];
+            else
+                for (int i = 0; i < d; ++i)
+                    own[i] = f * x[i];
+        }
+    }
+    for (int s = 0; s < S; ++s) {
+        memcpy(change + s * n + d, F + s * next + d, a * sizeof *change);
+        for (int i = d + a; i < n; ++i)
+            change[s * n + i] = 0.0;
+    }
+    if (a)
+        multiply_stages(S, a, d, r->answers, change, n, change + d, n);
+}
+
+/* The same by numbers of stages known to the compiler. */
 static void newton(radau *r)
 {
-    const int n = r->size, d = r->moving, a = r->fixed, S = r->m.stages;
-    memset(r->change, 0, (size_t)S * n * sizeof *r->change);
-    for (int k = 0; k <= S / 2; ++k) {
-        const int parts = k ? 2 : 1;
-        double *rate = r->picked, *moved = r->picked + 2 * n, re, im; /* the part of F and Z that belongs to this one */
-        memset(r->picked, 0, 4 * n * sizeof *r->picked);
-        for (int part = 0; part < parts; ++part)
-            for (int s = 0; s < S; ++s) {
-                subtract(n, -r->m.row[k][s][part], r->F + s * n, rate + part * n);
-                subtract(n, -r->m.row[k][s][part], r->Z + s * n, moved + part * n);
-            }
-        share_of(r, k, &re, &im);
-        for (int i = 0; i < d; ++i) {
-            const int at = r->moves[i];
-            r->right[i] = re * rate[at] - (k ? im * rate[n + at] : 0.0) - moved[at];
-            if (k)
-                r->right[d + i] = re * rate[n + at] + im * rate[at] - moved[n + at];
-        }
-        for (int part = 0; part < parts; ++part)
-            for (int i = 0; i < a; ++i)
-                r->sides[part * a + i] = -rate[part * n + r->fixes[i]];
-        solve_part(r, k);
-        for (int part = 0; part < parts; ++part) {
-            double *whole = moved; /* in the order of the state */
-            memset(whole, 0, n * sizeof *whole);
-            for (int i = 0; i < d; ++i)
-                whole[r->moves[i]] = r->right[part * d + i];
-            for (int i = 0; i < a; ++i)
-                whole[r->fixes[i]] = r->found[part * a + i];
-            for (int s = 0; s < S; ++s)
-                subtract(n, part ? r->m.column[k][s][1] : -r->m.column[k][s][0], whole, r->change + s * n);
-        }
+    switch (r->m.stages) {
+    case 3: newton_of(r, 3); break;
+    case 5: newton_of(r, 5); break;
+    default: newton_of(r, r->m.stages); break;
     }
 }
 
@@ -447,10 +687,7 @@ static double change_norm(const radau *r)
     const int n = r->moving + r->fixed, S = r->m.stages;
     double total = 0.0;
     for (int s = 0; s < S; ++s)
-        for (int i = 0; i < n; ++i) {
-            const double x = r->change[s * r->size + i] * r->scale[i];
-            total += x * x;
-        }
+        total += squares(n, r->change + s * r->size, r->scale);
     return sqrt(total / (S * n));
 }
 
@@ -496,25 +733,18 @@ static double error_of(radau *r, const double *rate)
 {
     const int n = r->size, d = r->moving, a = r->fixed, quadratures = n - d - a;
     const double g = r->h / r->m.value[0][0];
-    double total = 0.0;
     for (int i = 0; i < n; ++i) {
         double sum = g * rate[i];
         for (int s = 0; s < r->m.stages; ++s)
             sum += r->m.error[s] * r->Z[s * n + i];
         r->error[i] = sum;
     }
-    for (int i = 0; i < d; ++i)
-        r->right[i] = r->error[r->moves[i]];
-    memset(r->sides, 0, a * sizeof *r->sides); /* constraints hold */
-    solve_part(r, 0);
-    for (int i = 0; i < d; ++i)
-        r->error[r->moves[i]] = r->right[i];
-    for (int i = 0; i < a; ++i)
-        r->error[r->fixes[i]] = 0.0;
-    for (int i = 0; i < n; ++i) {
-        const double x = r->error[i] * r->scale[i];
-        total += x * x;
-    }
+    memcpy(r->right, r->error, d * sizeof *r->right);
+    memset(r->right + d, 0, (r->width - d) * sizeof *r->right);
+    solve_part(r, 0); /* of what moves: constraints hold */
+    memcpy(r->error, r->right, d * sizeof *r->error);
+    memset(r->error + d, 0, a * sizeof *r->error);
+    const double total = squares(n, r->error, r->scale);
     return sqrt(total / (d + quadratures));
 }
 
@@ -619,14 +849,14 @@ static int step(radau *r)
 /* Room for the arrays of an integration. Returns 1 if there is none. */
 static int make_room(radau *r)
 {
-    const size_t n = r->size, d = r->moving, a = r->fixed, S = r->m.stages;
-    const size_t most = d > a ? d : a;
+    const size_t n = r->size, d = r->moving, a = r->fixed, S = r->m.stages, w = r->width;
+    const size_t most = w > a ? w : a;
     struct { double **array; size_t count; } rooms[] = {
-        {&r->y, n}, {&r->slope, n}, {&r->atol, n}, {&r->scale, n}, {&r->trial, n}, {&r->error, n}, {&r->picked, 4 * n},
+        {&r->y, n}, {&r->slope, n}, {&r->atol, n}, {&r->scale, n}, {&r->trial, n}, {&r->error, n}, {&r->asked, n}, {&r->told, n},
         {&r->Z, S * n}, {&r->last_Z, S * n}, {&r->F, S * n}, {&r->change, S * n},
         {&r->schur, d * d}, {&r->coupling, d * a}, {&r->feed, a * (d + a)}, {&r->answers, a * d}, {&r->both, a * (d + a)},
-        {&r->right, 2 * d}, {&r->sides, 2 * a}, {&r->found, 2 * a}, {&r->room, 2 * (d + a)},
-        {&r->matrix[0], most * most}, {&r->matrix[1], 2 * d * d}, {&r->matrix[2], 2 * d * d}, {&r->matrix[3], 2 * d * d},
+        {&r->right, 2 * w}, {&r->room, a}, {&r->made, S * (d + a)},
+        {&r->matrix[0], most * most}, {&r->matrix[1], 2 * w * w}, {&r->matrix[2], 2 * w * w}, {&r->matrix[3], 2 * w * w},
     };
     size_t total = 0;
     for (size_t i = 0; i < sizeof rooms / sizeof *rooms; ++i)
@@ -641,7 +871,7 @@ static int make_room(radau *r)
 
 void radau_free(radau *r)
 {
-    free(r->moves);
+    free(r->order);
     free(r->numbers);
     free(r);
 }
@@ -661,29 +891,31 @@ radau *radau_new(const method *m, int size, int quadratures, const double *const
         r->fixed += constrained[i] != 0.0;
     r->moving = size - quadratures - r->fixed;
     const size_t d = r->moving, a = r->fixed;
-    int *counts = r->moves = calloc(n + a + (PAIRS + 1) * d, sizeof *counts);
+    r->width = r->moving <= SMALL ? (r->moving + 3) / 4 * 4 : r->moving;
+    int *counts = r->order = calloc(n + a + (PAIRS + 1) * d, sizeof *counts);
     if (make_room(r) || !counts) {
         radau_free(r);
         return NULL;
     }
-    r->fixes = counts + d;
     r->inner_pivots = counts + n;
     for (int k = 0; k <= PAIRS; ++k)
         r->pivots[k] = counts + n + a + k * d;
-    for (int i = 0, moving = 0, fixed = 0; i < size - quadratures; ++i)
-        if (constrained[i] != 0.0)
-            r->fixes[fixed++] = i;
-        else
-            r->moves[moving++] = i;
+    r->ordered = 1;
+    for (int i = 0, moving = 0, fixed = r->moving; i < size; ++i) {
+        const int at = i >= size - quadratures ? i : constrained[i] != 0.0 ? fixed++ : moving++;
+        r->order[at] = i;
+        r->ordered = r->ordered && at == i;
+    }
+    for (int i = 0; i < size; ++i) {
+        r->y[i] = y[r->order[i]];
+        r->atol[i] = atol[r->order[i]];
+    }
     r->data = data;
     r->rate = rate;
     r->jacobian = jacobian;
     r->rtol = rtol;
     r->t = t;
     r->share = r->contraction = 1.0;
-    memcpy(r->y, y, n * sizeof *y);
-    memcpy(r->atol, atol, n * sizeof *atol);
-    rescale(r);
     return r;
 }
 
@@ -693,11 +925,53 @@ static double first_step(const radau *r)
     const double span = r->end - r->t;
     double size = 0.0, speed = 0.0;
     for (int i = 0; i < r->moving; ++i) {
-        const int at = r->moves[i];
-        size += r->y[at] * r->y[at] * r->scale[at] * r->scale[at];
-        speed += r->slope[at] * r->slope[at] * r->scale[at] * r->scale[at];
+        size += r->y[i] * r->y[i] * r->scale[i] * r->scale[i];
+        speed += r->slope[i] * r->slope[i] * r->scale[i] * r->scale[i];
     }
     return speed * span * span > 1e-10 * size ? fmin(span, 0.01 * sqrt(fmax(size, 1e-10) / speed)) : 1e-3 * span;
+}
+
+/* A state in the order of the problem. */
+static void put(const radau *r, const double *y, double *out)
+{
+    for (int i = 0; i < r->size; ++i)
+        out[r->order[i]] = y[i];
+}
+
+/* Entries that constraints fix, made to fulfil them at the start: a linear system, since each constraint is linear in them.
+ * Returns 1 if it has no solution. */
+static int settle(radau *r)
+{
+    const int n = r->size, a = r->fixed, *fixes = r->order + r->moving;
+    const double *J = linearise(r, NOW);
+    double *N = r->matrix[0], *gap = r->room;
+    for (int i = 0; i < a; ++i) {
+        gap[i] = r->slope[r->moving + i];
+        for (int j = 0; j < a; ++j)
+            N[j * a + i] = J[(size_t)fixes[i] * n + fixes[j]];
+    }
+    r->of = PAST; /* its other parts change with what is solved for here */
+    if (factor(a, N, r->inner_pivots))
+        return 1;
+    solve(a, N, r->inner_pivots, gap);
+    for (int i = 0; i < a; ++i)
+        r->y[r->moving + i] -= gap[i];
+    return 0;
+}
+
+/* To be called once, before all else: the state at the start, as the constraints have it, into out [size]. Returns a number
+ * below zero where there is none. */
+int radau_begin(radau *r, double *out)
+{
+    if (!evaluate(r, r->t, r->y, r->slope))
+        return NOT_FINITE;
+    if (r->fixed && settle(r))
+        return SINGULAR;
+    if (r->fixed && !evaluate(r, r->t, r->y, r->slope))
+        return SINGULAR;
+    rescale(r);
+    put(r, r->y, out);
+    return REACHED;
 }
 
 /* Goes on until t reaches `until`, never beyond `end`; the state there, between two steps if need be, into out [size].
@@ -706,11 +980,8 @@ int radau_advance(radau *r, double until, double end, double *out)
 {
     const int n = r->size, S = r->m.stages;
     r->end = end;
-    if (r->h == 0.0) {
-        if (!evaluate(r, r->t, r->y, r->slope))
-            return NOT_FINITE;
+    if (r->h == 0.0)
         r->h = first_step(r);
-    }
     for (int taken = 0; r->t < until; ++taken) {
         if (taken == BREATH)
             return PAUSED;
@@ -718,14 +989,15 @@ int radau_advance(radau *r, double until, double end, double *out)
         if (code != REACHED)
             return code;
     }
-    memcpy(out, r->y, n * sizeof *out);
+    memcpy(r->trial, r->y, n * sizeof *r->trial);
     if (r->t > until) {
         double weight[MOST_STAGES];
         interpolate(&r->m, 1.0 + (until - r->t) / r->last_h, weight);
         weight[S - 1] -= 1.0;
         for (int s = 0; s < S; ++s)
-            subtract(n, -weight[s], r->last_Z + s * n, out);
+            subtract(n, -weight[s], r->last_Z + s * n, r->trial);
     }
+    put(r, r->trial, out);
     return REACHED;
 }
 

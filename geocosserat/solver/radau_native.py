@@ -37,6 +37,7 @@ DECLARATIONS = """
 /* Pointers that are known as numbers are passed as such. */
 void *radau_new(const void *method, int size, int quadratures, const double *constrained, uintptr_t data,
                 uintptr_t rate, uintptr_t jacobian, double t, const double *y, double rtol, const double *atol);
+int radau_begin(void *memory, double *out);
 void radau_free(void *memory);
 int radau_advance(void *memory, double until, double end, double *out);
 double radau_state(const void *memory, long *counts);
@@ -48,6 +49,7 @@ REASONS = {
     -3: "the rate is not finite however small the step",
     -4: "the constraints have no solution",
 }
+AT_START = {-3: "the rate is not finite at the start", -4: REASONS[-4]}
 
 
 def stages_for(rtol: float) -> int:
@@ -114,7 +116,10 @@ def _method_at(stages: int) -> Any:
 def radau_native(
     kernel: Kernel, start: Array, times: Array, rtol: float, atol: Array, progress: Progress, frame: Frame
 ) -> Trajectory:
-    """Integrates a NativeKernel from times[0] through all of `times`; see `integrate`."""
+    """Integrates a NativeKernel from times[0] through all of `times`; see `integrate`.
+
+    It begins where the constraints hold: the start needs no value for what they fix.
+    """
     ffi, lib, numbers = _library()
     functions = cast(NativeKernel, kernel).functions()
     first, last = float(times[0]), float(times[-1])
@@ -129,6 +134,10 @@ def radau_native(
         raise MemoryError(f"no room for dense matrices of {kernel.size} unknowns")
     done, reason, counts = 1, "", ffi.new("long[3]")
     try:
+        code = lib.radau_begin(memory, rows)
+        if code < 0:
+            states[0] = start
+            return Trajectory(times[:1].copy(), states[:1], 1, 0, 0, False, AT_START[code])
         while done < len(times) and not reason:
             code = lib.radau_advance(memory, float(times[done]), last, rows + done * kernel.size)
             now = lib.radau_state(memory, counts)
