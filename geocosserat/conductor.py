@@ -47,6 +47,7 @@ SceneLike = str | os.PathLike[str] | Mapping[str, Any] | Scene
 LawLike = str | os.PathLike[str] | Mapping[str, Any] | Law
 SOLUTION, PICTURE, SUMMARY = "solution.nc", "picture.png", "summary.json"
 LAW_PICTURE, PASSAGE, FINDINGS = "law.png", "law.tex", "check.json"
+CHECK_FILES = ("witness_stress.toml", "witness_wrench.toml", LAW_PICTURE, PASSAGE, FINDINGS)
 MOST_SECONDS = 30.0
 """What the question whether a law is passive may take; it is undecided then."""
 
@@ -372,8 +373,7 @@ def check(
             raise InputError(f"a parameter of the law ({known})", repr(name), "choose one of these", key="--set")
     folder = None if out is None else Path(out)
     if folder is not None:
-        witnesses = ("witness_stress.toml", "witness_wrench.toml")
-        _claim(folder, overwrite, (*witnesses, LAW_PICTURE, PASSAGE, FINDINGS))
+        _claim(folder, overwrite, CHECK_FILES)
     try:
         found, fields, content = bounded(partial(_answered, read, folder is not None), seconds)
     except OutOfBounds as error:
@@ -382,6 +382,9 @@ def check(
         why = {"verdict": "undecided", "grade": None, "conditions": [], "not_checked": [f"all: {error}"]}
         return Checked(None, (), {"law": read.path or read.name, "name": read.name, **why, "files": []})
     files = () if folder is None else tuple(write_bytes(folder / name, data) for name, data in content.items())
+    if folder is not None:
+        for name in set(CHECK_FILES) - set(content):  # of an earlier check, which are no more true
+            (folder / name).unlink(missing_ok=True)
     return Checked(found, files, {**fields, "files": [str(file) for file in files]})
 
 

@@ -159,6 +159,16 @@ def test_files_are_written_once(tmp_path: Path) -> None:
     assert tomllib.loads((out / "witness_stress.toml").read_text())["rod"]["law"]["parameters"]["a"] == 0.5
 
 
+def test_no_witness_of_an_earlier_check_is_left_beside_a_passive_verdict(tmp_path: Path) -> None:
+    """What is overwritten is the whole answer; other files are left alone."""
+    (tmp_path / "notes.txt").write_text("mine")
+    geocosserat.check(ODD, tmp_path, values={"a": 0.5})
+    assert (tmp_path / "witness_stress.toml").exists()
+    geocosserat.check(ODD, tmp_path, values={"a": 0.0}, overwrite=True)
+    assert not (tmp_path / "witness_stress.toml").exists()
+    assert (tmp_path / "notes.txt").read_text() == "mine"
+
+
 def test_the_scene_file_of_a_witness_runs(tmp_path: Path) -> None:
     """By its path, as the program would run it: the law's gain is in the ledger."""
     answer = geocosserat.check(ODD, tmp_path, values={"a": 2.0})
