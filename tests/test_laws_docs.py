@@ -22,6 +22,8 @@ from geocosserat.passivity.check import check as check_law
 from geocosserat.passivity.verdict import GRADES
 from tests.conftest import ROOT
 
+pytestmark = pytest.mark.slow
+
 TEXT = (ROOT / "docs" / "laws.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"^```(\w+)\n(.*?)^```", TEXT, re.MULTILINE | re.DOTALL)
 LAWS = sorted((ROOT / "examples" / "laws").glob("*.toml"))

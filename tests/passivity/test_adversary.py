@@ -9,6 +9,8 @@ import pytest
 from geocosserat.model.law import load_law
 from geocosserat.passivity.check import Check, check
 
+pytestmark = pytest.mark.slow
+
 OPEN = {"symbol": True}
 POSITIVE = {"symbol": True, "positive": True}
 Plain = dict[str, Any]
