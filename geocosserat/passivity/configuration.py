@@ -47,7 +47,7 @@ def field_rates(group: Group) -> tuple[dict[sp.Symbol, sp.Expr], ...]:
             # the angle is no entry of the matrix: R' = R b_a, of which it is the rotation
             places = {g[1 + k, 0]: along[1 + k, 0] for k in range(2)}
             pairs = {**places, symbol("theta"): sp.Integer(int(group.vee(group.basis[a])[-1]))}
-        rates.append({x: sp.sympify(rate, strict=True) for x, rate in pairs.items()})
+        rates.append({x: sp.S.Zero + rate for x, rate in pairs.items()})
     return tuple(rates)
 
 

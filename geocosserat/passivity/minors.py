@@ -104,7 +104,7 @@ def _positive_text(quantity: sp.Expr, opened: Mapping[str, Sign]) -> str | bool:
     """The condition quantity > 0, without the factors that are known to be positive; True if nothing is left of it,
     False if it cannot hold."""
     signs = {s: sp.Symbol(s.name, positive=True) for s in quantity.free_symbols if opened.get(s.name) == "positive"}
-    signed = sp.sympify(quantity, strict=True).xreplace(signs)
+    signed = (sp.S.Zero + quantity).xreplace(signs)
     factored = sp.factor(signed) if len(sp.Add.make_args(signed)) <= _MOST_TERMS else signed
     if factored.is_positive:
         return True

@@ -64,7 +64,7 @@ class _Fit:
 
     def __init__(self, group: Group, wrench: Sequence[sp.Expr], positive: Collection[str]) -> None:
         self.group, self.positive = group, positive
-        self.wrench = [sp.sympify(e, strict=True) for e in wrench]
+        self.wrench = list(wrench)
         names = symbols_of(group)
         n = group.space
         forced = any(e != 0 for e in wrench[:n])

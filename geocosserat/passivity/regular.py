@@ -20,9 +20,9 @@ from geocosserat.model.expressions import (
     Call,
     Expression,
     ExpressionError,
-    Negate,
     Number,
     evaluate,
+    substitute,
     symbols,
     to_text,
 )
@@ -197,16 +197,7 @@ def _in_logarithms(e: sp.Expr, part: sp.Expr) -> bool:
 
 def numbers_in(e: Expression, values: dict[str, float]) -> Expression:
     """The expression with numbers for those names, otherwise as it is written (nothing is worked out in floats)."""
-    match e:
-        case Call(function, argument):
-            return Call(function, numbers_in(argument, values))
-        case Binary(operator, left, right):
-            return Binary(operator, numbers_in(left, values), numbers_in(right, values))
-        case Negate(operand):
-            return Negate(numbers_in(operand, values))
-        case Number():
-            return e
-    return Number(values[e.name]) if e.name in values else e
+    return substitute(e, {name: Number(value) for name, value in values.items()})
 
 
 def symbols_of(group: Group) -> tuple[sp.Symbol, ...]:

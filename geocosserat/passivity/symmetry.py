@@ -282,7 +282,7 @@ def _said(name: str, words: str, reverses: bool, answer: Answer) -> Invariance:
 
 
 def _row(row: Sequence[Any], names: Sequence[str]) -> sp.Expr:
-    return sp.Add(*(sp.sympify(x, strict=True) * symbol(name) for x, name in zip(row, names, strict=True)))
+    return sp.Add(*(x * symbol(name) for x, name in zip(row, names, strict=True)))
 
 
 def _odd_entries(law: Law) -> tuple[tuple[str, str, str], ...] | None:

@@ -110,7 +110,7 @@ def _counted(form: Form, answer: WrenchAnswer) -> WrenchAnswer:
     found = conditions(turned, opened, form.positive)
     for alternative in () if found is None else found.alternatives:
         bound = {a: b for a, b in alternative if a.is_Symbol}
-        components = tuple(sp.sympify(e.subs(bound), strict=True) for e in form.components)
+        components = tuple(e.subs(bound) for e in form.components)
         part = _closed(replace(form, components=components, counted=False), Answer(True, "proved", ""), False)
         if len(bound) < len(alternative) or part.exact is not True:
             break
@@ -163,7 +163,7 @@ def _conditional(
         if len(bound) != len(alternative):
             surely = False
             continue
-        part = replace(form, components=tuple(sp.sympify(e.subs(bound), strict=True) for e in form.components))
+        part = replace(form, components=tuple(e.subs(bound) for e in form.components))
         inner = _closed(part, Answer(True, "proved", "under the conditions"), witnesses=False)
         energies.append(inner.potential)
         if inner.exact is True:

@@ -106,7 +106,7 @@ def _vanishes_on(group: Group, jump: sp.Expr, inside: sp.Expr) -> bool:
             slope = inside.coeff(x, 1) if inside.is_Add or inside.is_Mul or inside.is_Symbol else None
             if slope is not None and slope.is_number:
                 there = -(inside - slope * x) / slope
-                return vanishes([free(group, sp.sympify(jump.subs(x, there), strict=True))]).value is True
+                return vanishes([free(group, jump.subs(x, there))]).value is True
     top, _ = sp.fraction(sp.together(jump))
     names = sorted((jump.free_symbols | inside.free_symbols), key=str)
     if not (top.is_polynomial(*names) and inside.is_polynomial(*names)):
