@@ -24,7 +24,7 @@ from tempfile import mkdtemp
 from types import FunctionType
 from typing import Any
 
-from geocosserat.conductor import check
+from geocosserat.conductor.check import check
 from geocosserat.model import evaluation, fields, law, parameters, parser, place, printing, reading, tree
 from geocosserat.model.errors import InputError
 from geocosserat.model.expressions import ExpressionError, parse, to_text

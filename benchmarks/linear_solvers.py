@@ -11,7 +11,7 @@ from contextlib import contextmanager
 
 import numpy as np
 
-from geocosserat.conductor import kernel_text
+from geocosserat.conductor.kernels import kernel_text
 from geocosserat.discretisation.semidiscrete import discretise
 from geocosserat.kernel.load import load
 from geocosserat.model.scene import load_scene

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from geocosserat.accuracy import Setting
-from geocosserat.conductor import kernel_text
+from geocosserat.conductor.kernels import kernel_text
 from geocosserat.discretisation.semidiscrete import discretise
 from geocosserat.kernel.load import load
 from geocosserat.model.records import Scene

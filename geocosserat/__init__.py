@@ -1,6 +1,9 @@
 """Slender bodies in slow viscous flow: overdamped Cosserat rods on SE(2) and SE(3)."""
 
-from geocosserat.conductor import check, derive, generate, paper, run
+from geocosserat.conductor.check import check
+from geocosserat.conductor.derive import derive, generate
+from geocosserat.conductor.paper import paper
+from geocosserat.conductor.run import run
 from geocosserat.results.netcdf import load
 from geocosserat.version import VERSION as __version__
 

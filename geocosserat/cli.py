@@ -15,11 +15,11 @@ from typing import Any
 import click
 from rich.console import Console
 
-from geocosserat.conductor import check as check_law
-from geocosserat.conductor import derive as derive_equations
-from geocosserat.conductor import generate as generate_kernels
-from geocosserat.conductor import paper as review_paper
-from geocosserat.conductor import run as run_scene
+from geocosserat.conductor.check import check as check_law
+from geocosserat.conductor.derive import derive as derive_equations
+from geocosserat.conductor.derive import generate as generate_kernels
+from geocosserat.conductor.paper import paper as review_paper
+from geocosserat.conductor.run import run as run_scene
 from geocosserat.kernel.compile import CompileError
 from geocosserat.model.errors import InputError
 from geocosserat.results.atomic import write_bytes

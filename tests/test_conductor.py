@@ -15,7 +15,7 @@ import pytest
 import xarray
 
 import geocosserat
-from geocosserat import conductor
+from geocosserat.conductor import kernels
 from geocosserat.kernel import compile as compiling
 from geocosserat.kernel.compile import CompileError
 from geocosserat.model.errors import InputError
@@ -39,7 +39,7 @@ def no_compiler(monkeypatch: pytest.MonkeyPatch) -> None:
     """CC="" says: use no compiler."""
     monkeypatch.setenv("CC", "")
     monkeypatch.setattr(compiling, "compiler", compiling.compiler.__wrapped__)
-    monkeypatch.setattr(conductor, "compiler", compiling.compiler)
+    monkeypatch.setattr(kernels, "compiler", compiling.compiler)
 
 
 def test_a_scene_may_be_a_path_a_text_a_mapping_or_read_already(cantilever: Path) -> None:
@@ -177,7 +177,7 @@ def test_a_compiler_that_fails_is_an_error_only_if_c_was_asked_for(
     cantilever: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     """Else numpy takes over, and the compiler's words are on standard error."""
-    for module in (compiling, conductor):
+    for module in (compiling, kernels):
         monkeypatch.setattr(module, "compiler", lambda: "/bin/false")
     settings = ("run.elements=1", "run.degree=4", "run.frames=2")
     run = geocosserat.run(cantilever, settings=settings)

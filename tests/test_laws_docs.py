@@ -15,7 +15,7 @@ from click.testing import CliRunner, Result
 import geocosserat
 from geocosserat.algebra.groups import SE2, SE3
 from geocosserat.cli import main
-from geocosserat.conductor import MOST_SECONDS
+from geocosserat.conductor.scene import MOST_SECONDS
 from geocosserat.model.errors import InputError
 from geocosserat.model.law import LAW_KEYS, PARTS, load_law, pose_names, rates
 from geocosserat.passivity.check import check as check_law

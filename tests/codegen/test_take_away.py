@@ -15,7 +15,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from geocosserat.conductor import generate, kernel_text
+from geocosserat.conductor.derive import generate
+from geocosserat.conductor.kernels import kernel_text
 from geocosserat.discretisation.semidiscrete import discretise
 from geocosserat.kernel.load import load
 from tests.discretisation.rods import CAST, FROZEN, JOINED, changed

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from geocosserat.conductor import kernel_text
+from geocosserat.conductor.kernels import kernel_text
 from geocosserat.discretisation.semidiscrete import SemiDiscrete
 from geocosserat.kernel.compile import compile_c, compiler
 from geocosserat.kernel.load import load

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from geocosserat.conductor import kernel_text
+from geocosserat.conductor.kernels import kernel_text
 from geocosserat.discretisation.semidiscrete import discretise
 from geocosserat.kernel.contract import NativeKernel
 from geocosserat.kernel.load import load

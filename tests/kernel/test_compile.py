@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from geocosserat.conductor import kernel_text, run
+from geocosserat.conductor.kernels import kernel_text
+from geocosserat.conductor.run import run
 from geocosserat.discretisation.semidiscrete import discretise
 from geocosserat.kernel import compile as compiling
 from geocosserat.kernel.compile import CompileError, compile_c, compiler

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from geocosserat.conductor import kernel_text
+from geocosserat.conductor.kernels import kernel_text
 from geocosserat.discretisation.semidiscrete import SemiDiscrete, discretise
 from geocosserat.kernel.load import load
 from geocosserat.kernel.pure import NumpyRod

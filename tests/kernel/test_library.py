@@ -13,7 +13,7 @@ import pytest
 
 from geocosserat.codegen.identity import identity
 from geocosserat.codegen.source import generate
-from geocosserat.conductor import kernel_text
+from geocosserat.conductor.kernels import kernel_text
 from geocosserat.discretisation.structuring import structure_of
 from geocosserat.kernel.library import find, store
 from tests.discretisation.rods import changed, load, scene

@@ -20,7 +20,7 @@ from hypothesis import strategies as st
 
 from geocosserat.bounded import OutOfBounds, bounded
 from geocosserat.cli import main
-from geocosserat.conductor import check
+from geocosserat.conductor.check import check
 from geocosserat.model.errors import InputError
 from geocosserat.model.law import LAW_KEYS, Law, load_law
 from geocosserat.passivity.check import check as check_law

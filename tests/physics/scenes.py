@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 import geocosserat
-from geocosserat.conductor import Run, kernel_text
+from geocosserat.conductor.kernels import kernel_text
+from geocosserat.conductor.run import Run
 from geocosserat.discretisation.semidiscrete import SemiDiscrete, discretise
 from geocosserat.kernel.load import load
 from geocosserat.kernel.pure import NumpyRod

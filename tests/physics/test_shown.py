@@ -10,7 +10,7 @@ import pytest
 
 import geocosserat
 from geocosserat.algebra.exponential import rotation_from_vector, vector_from_rotation
-from geocosserat.conductor import kernel_text
+from geocosserat.conductor.kernels import kernel_text
 from geocosserat.discretisation.semidiscrete import discretise
 from geocosserat.kernel.load import load
 from geocosserat.model.scene import load_scene

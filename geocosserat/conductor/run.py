@@ -1,0 +1,137 @@
+"""From a scene to a solution, and to its files.
+
+    scene -> structure -> kernel text (shipped, cached, or generated) -> kernel -> trajectory -> solution
+"""
+
+import hashlib
+import os
+import sys
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from geocosserat.bounded import OutOfBounds, bounded
+from geocosserat.conductor.folder import claim, give_back
+from geocosserat.conductor.kernels import choose_backend, kernel_text
+from geocosserat.conductor.scene import MOST_SECONDS, SceneLike, laws_of, load_any
+from geocosserat.kernel.compile import CompileError
+from geocosserat.model.errors import InputError
+from geocosserat.model.law import Law
+from geocosserat.model.records import Scene
+from geocosserat.results.checkpoint import NAME as CHECKPOINT
+from geocosserat.results.checkpoint import Keeper
+from geocosserat.results.netcdf import save
+from geocosserat.results.solution import Solution
+from geocosserat.results.summary import summary, write_summary
+from geocosserat.simulation import Attempt, Clock, Simulation, solution_of
+from geocosserat.version import VERSION
+
+SOLUTION, PICTURE, SUMMARY = "solution.nc", "picture.png", "summary.json"
+
+
+@dataclass(frozen=True)
+class Run:
+    """What `run` returns: the solution, and the fields of ``run --json`` as attributes (tip, ledger, error, ...)."""
+
+    solution: Solution
+    fields: Mapping[str, Any]
+
+    def __getattr__(self, name: str) -> Any:
+        fields = self.__dict__.get("fields", {})  # empty while a copy is being made
+        if name in fields:
+            return fields[name]
+        raise AttributeError(f"a run has no field {name!r}; it has {', '.join(fields)}")
+
+
+def _tell(message: str) -> None:
+    print(message, file=sys.stderr)
+
+
+def run(
+    scene: SceneLike,
+    out: str | os.PathLike[str] | None = None,
+    *,
+    settings: Sequence[str] = (),
+    accuracy: float | None = None,
+    overwrite: bool = False,
+    resume: bool = False,
+) -> Run:
+    """Simulates a scene; writes solution.nc, picture.png and summary.json to `out` if given.
+
+    scene: a path, TOML text, a mapping or a Scene. settings: "key=value" changes to it. accuracy: position error at
+    the end, relative to the length. resume: go on from the checkpoint in `out`. A run that could not finish is
+    returned too, with `reached` false and the reason.
+
+    Raises InputError for a wrong scene, setting or folder; nothing is computed or written then. Interrupted
+    (Ctrl-C), it leaves a checkpoint in `out` and raises KeyboardInterrupt.
+    """
+    changes = [*settings, *([] if accuracy is None else [f"run.accuracy={accuracy!r}"])]
+    read = load_any(scene, changes)
+    folder = None if out is None else Path(out)
+    if resume and folder is None:
+        raise InputError("the folder of the interrupted run", "none", "name it with --out", key="--resume")
+    backend = choose_backend(read.run.backend, _tell)
+    keeper = Keeper(folder, _key(read), resume)
+    if folder is not None:
+        claim(folder, overwrite or resume, (SOLUTION, PICTURE, SUMMARY, CHECKPOINT))
+    clock = Clock()
+    try:
+        attempt, estimate = _simulate(read, backend, clock, keeper)
+    except (CompileError, InputError):
+        if folder is not None:
+            give_back(folder)
+        raise
+    except KeyboardInterrupt:
+        keeper.save()
+        raise
+    solution = solution_of(read, attempt, estimate, clock)
+    for law in laws_of(read):
+        solution = replace(solution, contents={**solution.contents, "law": _said_of(law)})
+    files: list[Path] = []
+    if folder is not None:
+        files = [folder / SOLUTION, folder / PICTURE, folder / SUMMARY]
+        _write(solution, files, summary(solution, files, scene=read.path))
+        keeper.finish()
+    return Run(solution, summary(solution, files, scene=read.path))
+
+
+def _said_of(law: Law) -> dict[str, Any]:
+    """Name, verdict and grade of a rod's law; says so where it may feed the rod."""
+    from geocosserat.passivity.check import check as check_law
+
+    with suppress(OutOfBounds):
+        found = bounded(partial(check_law, law, brief=True), MOST_SECONDS)
+        if found.verdict != "passive":
+            _tell(
+                f"the law {law.name} is {found.verdict}: "
+                "the rod may gain energy from it, and no method can promise that energy only falls"
+            )
+        return {"name": law.name, "verdict": found.verdict, "grade": found.grade}
+    return {"name": law.name, "verdict": "undecided", "grade": None}
+
+
+def _simulate(scene: Scene, backend: str, clock: Clock, keeper: Keeper) -> tuple[Attempt, float | None]:
+    """The simulation, on numpy if C was not asked for and turns out not to compile."""
+    try:
+        return Simulation(scene, backend, kernel_text, clock, keeper).solve()
+    except CompileError as error:
+        if scene.run.backend == "c":
+            raise
+        _tell(f"{error}; running on numpy instead")
+        return Simulation(scene, "numpy", kernel_text, clock, keeper).solve()
+
+
+def _key(scene: Scene) -> str:
+    """What a checkpoint belongs to: the scene and the program."""
+    return hashlib.sha256(f"{VERSION}\0{scene.source}".encode()).hexdigest()
+
+
+def _write(solution: Solution, files: Sequence[Path], fields: Mapping[str, Any]) -> None:
+    save(solution, files[0])
+    write_summary(fields, files[2])
+    from geocosserat.results.picture import picture  # last: whatever happens to it, the results are there
+
+    picture(solution, files[1])
