@@ -141,8 +141,8 @@ def _mutate(seconds: float, law_tally: Tally, text_tally: Tally, checked: Tally 
     chance = random.Random(time.time_ns())
     laws = [path.read_bytes() for path in LAWS]
     texts = [*expressions(laws), *PIECES]
-    end = time.monotonic() + seconds
-    while time.monotonic() < end:
+    end = time.process_time() + seconds
+    while time.process_time() < end:
         content = mutated(laws, chance)
         found = law_tally.take(content, read_law)
         if found is not None and chance.random() < 0.1 and len(laws) < 2000:
@@ -165,7 +165,7 @@ def _functions() -> Iterator[FunctionType]:
 
 
 def _led(seconds: float, law_tally: Tally, text_tally: Tally) -> None:
-    end = time.monotonic() + seconds
+    end = time.process_time() + seconds
     folder = mkdtemp()
 
     def one(content: bytes) -> None:
@@ -173,7 +173,7 @@ def _led(seconds: float, law_tally: Tally, text_tally: Tally) -> None:
             text_tally.take(content[1:], read_expression)
         else:
             law_tally.take(content[1:], read_law)
-        if time.monotonic() > end:
+        if time.process_time() > end:
             print(law_tally, text_tally, sep="\n", flush=True)
             rmtree(folder)
             os._exit(1 if law_tally.failures or text_tally.failures else 0)  # an exception would count as a find
@@ -191,7 +191,7 @@ def _led(seconds: float, law_tally: Tally, text_tally: Tally) -> None:
 def main() -> None:
     """Runs and prints counts."""
     words = argparse.ArgumentParser(description=__doc__.partition("\n")[0] if __doc__ else None)
-    words.add_argument("--seconds", type=float, default=60.0)
+    words.add_argument("--seconds", type=float, default=60.0, help="of the processor")
     words.add_argument("--check", action="store_true", help="ask also whether accepted laws are passive")
     words.add_argument("--own", action="store_true", help="mutate, even if atheris is installed")
     asked = words.parse_args()
