@@ -27,7 +27,7 @@ test: .venv/tools
 	$(BIN)/python -m mypy
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 $(TESTS)
 
-bench: .venv/tools
+bench: .venv/peers
 	$(BIN)/python -m benchmarks
 
 generated: .venv/locked
@@ -57,4 +57,8 @@ clean:
 
 .venv/tools: .venv/installed requirements-dev.lock
 	$(PIP) --only-binary :all: -r requirements-dev.lock
+	touch $@
+
+.venv/peers: .venv/tools requirements-bench.lock
+	$(PIP) --only-binary :all: -r requirements-bench.lock
 	touch $@

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 import geocosserat
-from geocosserat.accuracy import Setting, ladder, sees_all
 from geocosserat.model.expressions import parse, switch_times
 from geocosserat.model.scene import load_scene
+from geocosserat.planning.resolution import sees_all
+from geocosserat.planning.settings import SIZES
 
 ROD = {"motion": "planar", "length": 1.0, "stiffness": [1e4, 1e4, 1.0], "friction": [1.0, 1.0, 0.01]}
 
@@ -15,7 +16,7 @@ def test_a_feature_between_the_points_is_noticed() -> None:
     """A coarse mesh that has no point on a narrow bump would agree with another one that has none."""
     narrow = {**ROD, "reference": ["1", "0", "60*exp(-((u-0.5)/0.01)**2)"]}
     scene = load_scene({"rod": narrow, "start": {"strain": ["1", "0", "0"]}, "run": {"until": 0.02}})
-    seen = [sees_all(scene, setting, 1e-6) for setting in ladder(1e-6)]
+    seen = [sees_all(scene, *size, 1e-6) for size in SIZES]
     assert not any(seen[:2])
     assert seen[-1]
     run = geocosserat.run({"rod": narrow, "start": {"strain": ["1", "0", "0"]}, "run": {"until": 0.02, "frames": 2}})
@@ -37,7 +38,7 @@ def test_a_feature_too_fine_for_all_is_not_reported_as_solved() -> None:
 
 def test_uniform_rods_are_seen_by_the_coarsest_mesh() -> None:
     """Nothing varies, nothing can be missed."""
-    assert sees_all(load_scene({"rod": ROD, "run": {"until": 1.0}}), Setting(1, 1, 1e-6), 1e-12)
+    assert sees_all(load_scene({"rod": ROD, "run": {"until": 1.0}}), 1, 1, 1e-12)
 
 
 @pytest.mark.parametrize("method", ["cvode", "radau", "bdf", "lsoda"])

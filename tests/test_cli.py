@@ -347,7 +347,7 @@ def interrupted(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
         raise KeyboardInterrupt
 
     with monkeypatch.context() as patch:
-        patch.setattr("geocosserat.simulation.integrate", stop)
+        patch.setattr("geocosserat.conductor.simulate.integrate", stop)
         yield
 
 

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from geocosserat.accuracy import Setting
 from geocosserat.conductor.folder import claim
 from geocosserat.conductor.scene import SceneLike, load_any
+from geocosserat.conductor.simulate import chosen_setting
 from geocosserat.discretisation.semidiscrete import discretise
 from geocosserat.discretisation.structuring import structure_of
 from geocosserat.model.errors import InputError
+from geocosserat.planning.settings import Setting
 from geocosserat.results.atomic import write_bytes
-from geocosserat.simulation import chosen_setting
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,10 @@ from typing import Any
 from geocosserat.bounded import OutOfBounds, bounded
 from geocosserat.conductor.folder import claim, give_back
 from geocosserat.conductor.kernels import choose_backend, kernel_text
+from geocosserat.conductor.report import solution_of
 from geocosserat.conductor.scene import MOST_SECONDS, SceneLike, laws_of, load_any
+from geocosserat.conductor.search import Found, search
+from geocosserat.conductor.simulate import Clock, Simulator
 from geocosserat.kernel.compile import CompileError
 from geocosserat.model.errors import InputError
 from geocosserat.model.law import Law
@@ -26,7 +29,6 @@ from geocosserat.results.checkpoint import Keeper
 from geocosserat.results.netcdf import save
 from geocosserat.results.solution import Solution
 from geocosserat.results.summary import summary, write_summary
-from geocosserat.simulation import Attempt, Clock, Simulation, solution_of
 from geocosserat.version import VERSION
 
 SOLUTION, PICTURE, SUMMARY = "solution.nc", "picture.png", "summary.json"
@@ -68,7 +70,7 @@ def run(
     Raises InputError for a wrong scene, setting or folder; nothing is computed or written then. Interrupted
     (Ctrl-C), it leaves a checkpoint in `out` and raises KeyboardInterrupt.
     """
-    changes = [*settings, *([] if accuracy is None else [f"run.accuracy={accuracy!r}"])]
+    changes = [*settings, *([] if accuracy is None else [f"run.accuracy={float(accuracy)!r}"])]
     read = load_any(scene, changes)
     folder = None if out is None else Path(out)
     if resume and folder is None:
@@ -79,7 +81,7 @@ def run(
         claim(folder, overwrite or resume, (SOLUTION, PICTURE, SUMMARY, CHECKPOINT))
     clock = Clock()
     try:
-        attempt, estimate = _simulate(read, backend, clock, keeper)
+        found = _simulate(read, backend, clock, keeper)
     except (CompileError, InputError):
         if folder is not None:
             give_back(folder)
@@ -87,7 +89,7 @@ def run(
     except KeyboardInterrupt:
         keeper.save()
         raise
-    solution = solution_of(read, attempt, estimate, clock)
+    solution = solution_of(read, found, clock)
     for law in laws_of(read):
         solution = replace(solution, contents={**solution.contents, "law": _said_of(law)})
     files: list[Path] = []
@@ -113,15 +115,15 @@ def _said_of(law: Law) -> dict[str, Any]:
     return {"name": law.name, "verdict": "undecided", "grade": None}
 
 
-def _simulate(scene: Scene, backend: str, clock: Clock, keeper: Keeper) -> tuple[Attempt, float | None]:
+def _simulate(scene: Scene, backend: str, clock: Clock, keeper: Keeper) -> Found:
     """The simulation, on numpy if C was not asked for and turns out not to compile."""
     try:
-        return Simulation(scene, backend, kernel_text, clock, keeper).solve()
+        return search(Simulator(scene, backend, kernel_text, clock), keeper)
     except CompileError as error:
         if scene.run.backend == "c":
             raise
         _tell(f"{error}; running on numpy instead")
-        return Simulation(scene, "numpy", kernel_text, clock, keeper).solve()
+        return search(Simulator(scene, "numpy", kernel_text, clock), keeper)
 
 
 def _key(scene: Scene) -> str:

@@ -18,13 +18,13 @@ NAME = "checkpoint.npz"
 
 @dataclass(frozen=True, eq=False)
 class Checkpoint:
-    """key: what is being computed (a hash); rung: which refinement; states (frames so far, size) of it;
-    before (nodes, axis): final positions of the refinement before, empty if there was none."""
+    """key: what is being computed (a hash). number: of the run, out of those of a plan, whose states (frames so far,
+    size) are kept, if any. ends: what each run that is over left behind, an array each."""
 
     key: str
-    rung: int
+    number: int
     states: Array
-    before: Array
+    ends: tuple[Array, ...]
 
 
 def save_checkpoint(checkpoint: Checkpoint, folder: Path) -> Path:
@@ -33,9 +33,10 @@ def save_checkpoint(checkpoint: Checkpoint, folder: Path) -> Path:
     np.savez(
         stream,
         key=np.array(checkpoint.key),
-        rung=np.array(checkpoint.rung),
+        number=np.array(checkpoint.number),
         states=checkpoint.states,
-        before=checkpoint.before,
+        allow_pickle=False,
+        **{f"end_{i}": end for i, end in enumerate(checkpoint.ends)},
     )
     return write_bytes(folder / NAME, stream.getvalue())
 
@@ -48,16 +49,15 @@ def load_checkpoint(folder: Path) -> Checkpoint:
     path = folder / NAME
     try:
         with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as stored:
-            found = Checkpoint(
-                str(stored["key"]), int(stored["rung"]), np.asarray(stored["states"]), np.asarray(stored["before"])
-            )
+            ends = tuple(np.asarray(stored[f"end_{i}"]) for i in range(len(stored.files) - 3))
+            found = Checkpoint(str(stored["key"]), int(stored["number"]), np.asarray(stored["states"]), ends)
     except FileNotFoundError:
         raise FileError(path, "a checkpoint to go on from", "none", "start without --resume") from None
     except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
         raise FileError(
             path, "a checkpoint to go on from", f"a damaged file ({error})", "start without --resume"
         ) from None
-    if found.states.ndim != 2 or not len(found.states) or not np.all(np.isfinite(found.states)):
+    if not all(array.ndim == 2 and np.all(np.isfinite(array)) for array in (found.states, *found.ends)):
         raise FileError(path, "a checkpoint to go on from", "states that are not usable", "start without --resume")
     return found
 
@@ -80,17 +80,32 @@ class Keeper:
                     "resume with the same scene, or start without --resume",
                     key="--resume",
                 )
-        self.rung, self.states, self.before = 0, [np.empty(0)], np.empty((0, 0))
+        self.number, self.states, self.ends = 0, list[Array](), list[Array]()
+        if self.resumed is not None:
+            self.number, self.states = self.resumed.number, list(self.resumed.states)
+            self.ends = list(self.resumed.ends)
         self.saved = time.monotonic()
 
-    def begin(self, rung: int, start: Array, before: Array) -> Array:
-        """States (frames, size) of this rung that are there already; at least the start."""
-        resumed = self.resumed
-        done = resumed.states if resumed is not None and resumed.rung == rung else start[None]
+    def begin(self, number: int, start: Array) -> Array:
+        """States (frames, size) of this run that are there already; at least the start."""
+        done = self.resumed.states if self.resumed is not None and self.holds(number) else start[None]
         if done.shape[1] != len(start):
             raise InputError(f"states of {len(start)} numbers", f"{done.shape[1]}", "start without --resume")
-        self.rung, self.states, self.before = rung, list(done), before
+        self.number, self.states = number, list(done)
         return np.array(done)
+
+    def holds(self, number: int) -> bool:
+        """Whether the states of this run were kept when it was interrupted."""
+        return self.resumed is not None and self.resumed.number == number and len(self.resumed.states) > 0
+
+    def ended(self, number: int) -> Array | None:
+        """What a run left behind before the interruption, if it was over."""
+        ends = self.resumed.ends if self.resumed is not None else ()
+        return ends[number] if number < len(ends) else None
+
+    def end(self, left: Array) -> None:
+        """Notes what the next run left behind that was not over before the interruption."""
+        self.ends.append(left)
 
     def frame(self, _: int, state: Array) -> None:
         """Notes a state that was reached."""
@@ -100,8 +115,9 @@ class Keeper:
 
     def save(self) -> None:
         """Writes the checkpoint now."""
-        if self.folder is not None and self.states[0].size:
-            save_checkpoint(Checkpoint(self.key, self.rung, np.array(self.states), self.before), self.folder)
+        if self.folder is not None:
+            states = np.array(self.states, ndmin=2)
+            save_checkpoint(Checkpoint(self.key, self.number, states, tuple(self.ends)), self.folder)
         self.saved = time.monotonic()
 
     def finish(self) -> None:

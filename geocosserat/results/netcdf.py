@@ -1,7 +1,7 @@
 """Solution files: netCDF-4 through h5netcdf, which imports in a tenth of the time of xarray.
 
 A file holds every field of a Solution: arrays as variables, the rest as attributes (None is an absent one, a
-dictionary is JSON), and a checksum over all bytes. xarray, ncdump and any HDF5 tool read it.
+dictionary or list is JSON), and a checksum over all bytes. xarray, ncdump and any HDF5 tool read it.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ from geocosserat.results.solution import SHAPES, TEXTS, Solution
 if TYPE_CHECKING:
     import xarray
 
-FORMAT = "geocosserat solution 2"
-_DICTIONARIES = ("evaluations", "seconds", "contents", "provenance")
+FORMAT = "geocosserat solution 3"
+_OBJECTS = ("evaluations", "seconds", "contents", "provenance", "plan")
 _INTEGERS = ("elements", "degree", "unknowns", "reached")
 _NUMBERS = ("length", "requested", "estimated")
 
@@ -66,7 +66,7 @@ def load(path: str | os.PathLike[str]) -> Solution:
             raise FileError(path, f"the format {FORMAT!r}", repr(attributes.get("format")),
                             "read it with the version that wrote it, named in its attribute `provenance`")
         values: dict[str, Any] = {name: variable[...] for name, variable in file.variables.items()}
-    values |= {name: json.loads(attributes[name]) for name in _DICTIONARIES}
+    values |= {name: json.loads(attributes[name]) for name in _OBJECTS}
     values |= {name: attributes[name] for name in (*TEXTS, *_INTEGERS)}
     values |= {name: attributes.get(name) for name in _NUMBERS}
     recovered: dict[str, Any] = {field.name: values.get(field.name) for field in fields(Solution)}
@@ -103,7 +103,7 @@ def _image(solution: Solution) -> bytes:
         for name in _NUMBERS:
             if (value := getattr(solution, name)) is not None:
                 file.attrs[name] = value
-        for name in _DICTIONARIES:
+        for name in _OBJECTS:
             file.attrs[name] = json.dumps(getattr(solution, name))
     return image.getvalue()
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -53,7 +53,8 @@ class Solution:
     evaluations       rate, jacobian, steps;   seconds   derive, compile, plan, solve
     contents          what the kernel consisted of: fields, terms, arguments, operations
     provenance        versions, platform, date, kernel: whatever is needed to do it again
-    reached, reason   whether the run came to its end, and if not, why
+    reached, reason   whether the run came to its end with the accuracy asked for, and if not, why
+    plan              the runs that led to it: setting, seconds and those foreseen; empty if the scene gave the setting
 
     Arrays are copied, double precision and read-only. Equality is bit for bit.
 
@@ -89,6 +90,7 @@ class Solution:
     provenance: Mapping[str, str]
     reached: bool
     reason: str
+    plan: Sequence[Mapping[str, Any]] = ()
 
     def __post_init__(self) -> None:
         plain: dict[str, object] = {name: _frozen(getattr(self, name)) for name in SHAPES}
@@ -99,7 +101,9 @@ class Solution:
             **{name: _writable(getattr(self, name)) for name in TEXTS},
             "evaluations": {key: int(value) for key, value in self.evaluations.items()},
             "seconds": {key: float(value) for key, value in self.seconds.items()},
-            "contents": json.loads(json.dumps(self.contents)),  # plain, and equal to what a file gives back
+            # plain, and equal to what a file gives back
+            "contents": json.loads(json.dumps(self.contents)),
+            "plan": json.loads(json.dumps(list(self.plan))),
             "provenance": {str(key): str(value) for key, value in self.provenance.items()},
         }
         for name, value in plain.items():
@@ -172,6 +176,8 @@ def _same(one: object, other: object) -> bool:
     """Equal bit for bit: NaN equals itself, 0.0 differs from -0.0."""
     if isinstance(one, np.ndarray) and isinstance(other, np.ndarray):
         return one.shape == other.shape and one.tobytes() == other.tobytes()
+    if isinstance(one, list) and isinstance(other, list):
+        return len(one) == len(other) and all(map(_same, one, other))
     if isinstance(one, dict) and isinstance(other, dict):
         return one.keys() == other.keys() and all(_same(one[key], other[key]) for key in one)
     # the shortest repr of a float determines all its bits

@@ -48,6 +48,7 @@ def summary(
         "contents": dict(solution.contents),
         "evaluations": dict(solution.evaluations),
         "seconds": dict(solution.seconds),
+        "plan": list(solution.plan),
         "files": [os.fspath(file) for file in files],
     }
     finite: dict[str, Any] = _finite(fields)
@@ -132,6 +133,8 @@ def _time(fields: Mapping[str, Any]) -> str:
 def _cost(fields: Mapping[str, Any]) -> str:
     counts, seconds = fields["evaluations"], fields["seconds"]
     spent = ", ".join(f"{name} {value:.3g} s" for name, value in seconds.items() if value)
+    foreseen = next((run["predicted"] for run in reversed(fields["plan"]) if run["whole"]), None)
+    spent += f" (foreseen {foreseen:.3g} s)" if foreseen and spent else ""
     return (f"{fields['method']}, {fields['backend']} backend: {_count(counts['steps'], 'step')}, "
             f"{_count(counts['rate'], 'rate')}, {_count(counts['jacobian'], 'Jacobian')}; "
             f"{spent or 'no time'}")

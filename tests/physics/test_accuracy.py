@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 import geocosserat
-from geocosserat import simulation
-from geocosserat.accuracy import Setting, interpolate, ladder, position_gap
+from geocosserat.conductor import search
 from geocosserat.discretisation.mesh import make_mesh
 from geocosserat.discretisation.semidiscrete import discretise
 from geocosserat.model.scene import load_scene
+from geocosserat.planning.gap import interpolate, position_gap
 from tests.physics.scenes import EXAMPLES, NAMES, Array, example, simulate
 
 pytestmark = pytest.mark.slow
@@ -54,23 +54,13 @@ def test_more_accuracy_costs_more_and_is_estimated_smaller() -> None:
 
 def test_an_accuracy_that_refinement_does_not_reach_is_said_not_to_be(monkeypatch: pytest.MonkeyPatch) -> None:
     """The finest rod is returned, with the estimate of its error and the reason."""
-    rungs = (Setting(1, 4, 1e-7), Setting(1, 5, 1e-7))
-    monkeypatch.setattr(simulation, "ladder", lambda accuracy: rungs)
+    monkeypatch.setattr(search, "SIZES", ((1, 4), (1, 5)))
+    monkeypatch.setattr(search, "most_decades", lambda *_: 0.5)
     run = geocosserat.run(EXAMPLES / "cantilever.toml", settings=["run.backend=numpy"])
     assert not run.reached
     assert run.reason == "the accuracy asked for was not reached by refinement"
     assert run.degree == 5
     assert 1e-5 < run.error["estimated"] < 1e-2
-
-
-def test_the_ladder_refines_in_every_way() -> None:
-    """Each rung has more unknowns and a tighter tolerance, none below round-off."""
-    rungs = list(ladder(1e-9))
-    unknowns = [rung.elements * rung.degree for rung in rungs]
-    assert unknowns == sorted(set(unknowns))
-    tolerances = [rung.rtol for rung in rungs]
-    assert tolerances == sorted(tolerances, reverse=True)
-    assert 1e-13 <= tolerances[-1] <= tolerances[0] < 1e-9
 
 
 @pytest.mark.parametrize("degree", [1, 3, 16, 40])

@@ -216,7 +216,7 @@ def test_a_file_of_another_version_is_refused(
     with monkeypatch.context() as patch:
         patch.setattr(netcdf, "FORMAT", "geocosserat solution 99")
         path = save(small, tmp_path / "solution.nc")
-    with pytest.raises(FileError, match=r"expected the format .* 2', found .* 99'; read it with the version"):
+    with pytest.raises(FileError, match=r"expected the format .* 3', found .* 99'; read it with the version"):
         load(path)
 
 

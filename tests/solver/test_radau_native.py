@@ -116,7 +116,7 @@ def test_more_stages_take_fewer_steps(library: Path) -> None:
 
     three, five, seven = map(steps, STAGES)
     assert three > 2 * five > 2 * seven
-    assert [stages_for(rtol) for rtol in (1e-3, 1e-7, 1e-12)] == [3, 5, 7]
+    assert [stages_for(rtol) for rtol in (1e-1, 1e-3, 1e-7)] == [3, 5, 7]
 
 
 def test_a_rate_that_cannot_be_evaluated_ends_the_run_there(library: Path) -> None:

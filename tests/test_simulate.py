@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from geocosserat.conductor.simulate import drift
 from geocosserat.discretisation.semidiscrete import SemiDiscrete, discretise
 from geocosserat.model.scene import load_scene
-from geocosserat.simulation import drift
 from geocosserat.solver.trajectory import Trajectory
 
 CLAMPED, PINNED, FREE = {"kind": "clamped"}, {"kind": "pinned"}, {"kind": "free"}

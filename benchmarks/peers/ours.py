@@ -1,0 +1,61 @@
+"""This project: `integrate` on the generated kernel, warm, at a degree, a number of elements, a method and a
+tolerance.
+
+`solve` is a relaxing rod, `settle` the cantilever of `statics`: a motion from rest that goes on until it is static,
+on one element and with as much friction as one likes. Timed as it is called from Python: from the initial state to
+the state at the end. Compilation, and the marching of positions afterwards, are not timed, as for the other
+solvers.
+"""
+
+import time
+from functools import lru_cache
+
+import numpy as np
+
+from benchmarks.peers.problems import UNTIL, Problem, error_of_strains, rod_of
+from benchmarks.peers.statics import LOAD, STIFFNESS, tip
+from geocosserat.conductor.kernels import kernel_text
+from geocosserat.discretisation.semidiscrete import SemiDiscrete, discretise
+from geocosserat.kernel.load import load
+from geocosserat.kernel.native import NativeRod
+from geocosserat.kernel.pure import NumpyRod
+from geocosserat.model.scene import load_scene
+from geocosserat.solver.integrate import integrate
+
+
+def solve(problem: Problem, elements: int, degree: int, method: str, rtol: float) -> tuple[float, float, int]:
+    """Error, seconds, and steps."""
+    rod, kernel = rod_of(problem, elements, degree)
+    times = np.array([0.0, UNTIL])
+    begin = time.perf_counter()
+    done = integrate(kernel, rod.state, times, method, rtol, rtol)
+    seconds = time.perf_counter() - begin
+    if not done.reached:
+        raise RuntimeError(f"ours: {done.reason}")
+    return error_of_strains(problem, rod.turn(done.states[-1]), elements, degree), seconds, done.steps
+
+
+@lru_cache(maxsize=32)
+def _cantilever(degree: int) -> tuple[SemiDiscrete, NativeRod | NumpyRod]:
+    scene = load_scene(
+        {
+            "rod": {"motion": "planar", "length": 1.0, "stiffness": list(STIFFNESS), "friction": [1.0, 1.0, 0.01]},
+            "ends": {"right": {"kind": "free", "force": [0.0, -LOAD], "frame": "world"}},
+            "run": {"until": 1.0},
+        }
+    )
+    rod = discretise(scene, 1, degree)
+    return rod, load(kernel_text(rod.structure), rod, "c")
+
+
+def settle(degree: int, method: str, until: float, rtol: float) -> tuple[float, float, int]:
+    """Error of the tip, seconds, steps."""
+    rod, kernel = _cantilever(degree)
+    times = np.array([0.0, until])
+    begin = time.perf_counter()
+    done = integrate(kernel, rod.state, times, method, rtol, rtol)
+    seconds = time.perf_counter() - begin
+    if not done.reached:
+        raise RuntimeError(f"ours: {done.reason}")
+    found = rod.poses(done.states[-1], until).position[-1]
+    return float(np.linalg.norm(found - tip())), seconds, done.steps

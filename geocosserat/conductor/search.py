@@ -1,0 +1,165 @@
+"""The simulation that a scene asks for: at its own setting, or at the one that a plan finds for its accuracy."""
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from geocosserat.conductor.simulate import Attempt, Simulator, chosen_setting, drift
+from geocosserat.discretisation.mesh import Array, Mesh
+from geocosserat.discretisation.sampling import frictionless, left_of_friction
+from geocosserat.discretisation.semidiscrete import discretise
+from geocosserat.planning.gap import position_gap
+from geocosserat.planning.plan import Choice, Errors, Level, plan
+from geocosserat.planning.resolution import sees_all
+from geocosserat.planning.settings import (
+    DEFAULT_ACCURACY,
+    LARGEST_DENSE,
+    LEAST,
+    SIZES,
+    Setting,
+    most_decades,
+    predicted,
+    tolerance,
+)
+from geocosserat.results.checkpoint import Keeper
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """The attempt to report; the estimate of its error relative to the length, None where nothing is known of it;
+    whether that is small enough, and if not, why; how each run of the plan was made, in their order."""
+
+    attempt: Attempt
+    estimate: float | None
+    reached: bool
+    reason: str
+    plan: tuple[Mapping[str, Any], ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """What a plan compares: the rod at the end, positions (nodes, space), empty if the run did not come to its end; how
+    far a held end strayed, a length."""
+
+    mesh: Mesh
+    positions: Array
+    strayed: float
+
+
+def search(simulate: Simulator, keeper: Keeper) -> Found:
+    """Simulates the scene; spends less on finding out how than on doing it, as far as orders can foretell."""
+    scene, seconds = simulate.scene, simulate.clock.seconds
+    chosen = chosen_setting(scene)
+    if chosen is not None:
+        attempt = simulate(chosen, scene.run.frames, lambda start: keeper.begin(0, start), keeper.frame)
+        seconds["solve"] = attempt.seconds
+        return Found(attempt, None, attempt.trajectory.reached, attempt.trajectory.reason, ())
+    found = _Search(simulate, keeper, scene.run.accuracy or DEFAULT_ACCURACY).found()
+    seconds["solve"] = found.attempt.seconds
+    seconds["plan"] = sum(run["seconds"] for run in found.plan) - found.attempt.seconds
+    return found
+
+
+class _Search:
+    def __init__(self, simulate: Simulator, keeper: Keeper, accuracy: float) -> None:
+        self.simulate, self.keeper, self.accuracy = simulate, keeper, accuracy
+        self.scene = simulate.scene
+        self.first = self._first()
+        self.outcomes: list[Outcome] = []
+        self.runs: list[dict[str, Any]] = []
+
+    def found(self) -> Found:
+        # of the model itself: rotations without friction keep a little of it
+        modelled = left_of_friction(self.scene.run) if frictionless(self.scene.model) else 0.0
+        points = tuple(elements * degree for elements, degree in SIZES)
+        choice = Choice(points, lambda size: most_decades(self._method(size), self.accuracy), self._method)
+        steps = plan(self.accuracy - modelled, choice, Errors(self._gap, self._strayed), self.first)
+        request = next(steps)
+        kept: Attempt | None = None
+        while True:
+            attempt = self._run(request.level, request.whole)
+            if request.whole and attempt is not None:
+                kept = attempt
+            try:
+                request = steps.send(bool(self.outcomes[-1].positions.size))
+            except StopIteration as end:
+                verdict = end.value
+                break
+        assert kept is not None
+        estimate = None if verdict.estimate is None else verdict.estimate + modelled
+        return Found(kept, estimate, verdict.reached, _reason(kept, estimate, verdict.reached), tuple(self.runs))
+
+    def _run(self, level: Level, whole: bool) -> Attempt | None:
+        """One more run of the plan; None where no more is needed than what is known from before an interruption."""
+        number, setting = len(self.outcomes), self._setting(level)
+        known = self.keeper.ended(number)
+        attempt = None
+        if known is None or (whole and self.keeper.holds(number)):
+            attempt = self._simulated(number, setting, whole)
+        if known is None:
+            assert attempt is not None
+            known = _left(attempt)
+            self.keeper.end(known)
+        mesh = attempt.rod.mesh if attempt else discretise(self.scene, setting.elements, setting.degree).mesh
+        self.outcomes.append(Outcome(mesh, known[1:], float(known[0, 0])))
+        taken = attempt.seconds if attempt else 0.0
+        self.runs.append({**asdict(setting), "whole": whole, "seconds": taken, "predicted": self._predicted(setting)})
+        return attempt
+
+    def _simulated(self, number: int, setting: Setting, whole: bool) -> Attempt:
+        if not whole:
+            return self.simulate(setting, 2)
+        frames, keeper = self.scene.run.frames, self.keeper
+        return self.simulate(setting, frames, lambda start: keeper.begin(number, start), keeper.frame)
+
+    def _setting(self, level: Level) -> Setting:
+        method = self._method(level.size)
+        return Setting(*SIZES[level.size], tolerance(method, self.accuracy, level.decades), method)
+
+    def _method(self, size: int) -> str:
+        """The integrator that the scene names, or the one that takes least for a rod of that size."""
+        if self.scene.run.method is not None:
+            return self.scene.run.method
+        elements, degree = SIZES[max(size, self.first + 1)]  # the first run is there to be compared with the second
+        unknowns = elements * degree * (self.scene.model.group.dimension - len(self.scene.model.frozen))
+        return "radau" if self.simulate.backend == "c" and unknowns <= LARGEST_DENSE else "cvode"
+
+    def _predicted(self, setting: Setting) -> float | None:
+        """Seconds that a run at a setting should take, by the last one that the same method has made."""
+        for run in reversed(self.runs):
+            if run["method"] == setting.method and run["seconds"]:
+                other = Setting(run["elements"], run["degree"], run["rtol"], run["method"])
+                return predicted(setting, other, run["seconds"])
+        return None
+
+    def _first(self) -> int:
+        """The first size that notices everything the scene varies along the rod; but not the last one of all."""
+        sizes = range(len(SIZES) - 2)
+        return next((k for k in sizes if sees_all(self.scene, *SIZES[k], self.accuracy)), len(SIZES) - 2)
+
+    def _gap(self, coarse: int, fine: int) -> float:
+        one, other = self.outcomes[coarse], self.outcomes[fine]
+        return position_gap(one.mesh, one.positions, other.mesh, other.positions) / self.scene.model.length
+
+    def _strayed(self, number: int) -> float:
+        return self.outcomes[number].strayed / self.scene.model.length
+
+
+def _left(attempt: Attempt) -> Array:
+    """Where a run left the rod, as one array: how far a held end strayed, then positions (nodes, space), if any."""
+    rod, trajectory = attempt.rod, attempt.trajectory
+    space = rod.structure.group.space
+    if not trajectory.reached:
+        return np.zeros((1, space))
+    positions = rod.poses(trajectory.states[-1], trajectory.times[-1]).position
+    return np.concatenate([np.full((1, space), drift(rod, trajectory)), positions])
+
+
+def _reason(attempt: Attempt, estimate: float | None, reached: bool) -> str:
+    if reached or not attempt.trajectory.reached:
+        return attempt.trajectory.reason
+    if estimate is not None and attempt.setting.rtol <= LEAST[attempt.setting.method]:
+        return f"the accuracy asked for is below round-off: at the least tolerance, about {estimate:.1g} is left"
+    return "the accuracy asked for was not reached by refinement"

@@ -1,0 +1,172 @@
+"""One simulation of a scene at one setting: how exactly, from where, past which instants."""
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from geocosserat.discretisation.mesh import Array
+from geocosserat.discretisation.sampling import stiffnesses
+from geocosserat.discretisation.semidiscrete import SemiDiscrete, discretise
+from geocosserat.discretisation.structure import RodStructure
+from geocosserat.kernel.library import KernelText
+from geocosserat.kernel.load import load
+from geocosserat.kernel.native import NativeRod
+from geocosserat.kernel.pure import NumpyRod
+from geocosserat.model.errors import InputError
+from geocosserat.model.expressions import switch_times
+from geocosserat.model.records import Scene
+from geocosserat.planning.settings import DEFAULT_ACCURACY, Setting
+from geocosserat.results.progress import progress
+from geocosserat.solver.integrate import integrate
+from geocosserat.solver.trajectory import Frame, Trajectory
+
+MOST_NUMBERS = 2**28
+"""States of all frames, in numbers: 2 GiB, and about as much again for the fields made of them."""
+
+
+class Clock:
+    """Seconds spent on each kind of work."""
+
+    def __init__(self) -> None:
+        self.seconds = dict.fromkeys(("derive", "compile", "plan", "solve"), 0.0)
+
+    @contextmanager
+    def __call__(self, kind: str) -> Iterator[None]:
+        start = time.perf_counter()
+        try:
+            yield
+        finally:
+            self.seconds[kind] += time.perf_counter() - start
+
+
+@dataclass(frozen=True, eq=False)
+class Attempt:
+    """One simulation at one setting; seconds: of the integration alone."""
+
+    setting: Setting
+    rod: SemiDiscrete
+    kernel: NativeRod | NumpyRod
+    trajectory: Trajectory
+    text: KernelText
+    seconds: float
+
+
+class Simulator:
+    """Simulates a scene on a backend at any setting; the clock says what for."""
+
+    def __init__(
+        self, scene: Scene, backend: str, kernel_text: Callable[[RodStructure], KernelText], clock: Clock
+    ) -> None:
+        self.scene, self.backend, self.kernel_text, self.clock = scene, backend, kernel_text, clock
+
+    def __call__(
+        self,
+        setting: Setting,
+        frames: int,
+        begin: Callable[[Array], Array] = lambda start: start[None],
+        frame: Frame = lambda *_: None,
+    ) -> Attempt:
+        """A simulation that keeps so many states. begin: of the start (size,) the states (frames, size) that are there
+        already; frame: is told of each that comes."""
+        scene = self.scene
+        with self.clock("derive"):
+            rod = discretise(scene, setting.elements, setting.degree)
+            text = self.kernel_text(rod.structure)
+        with self.clock("compile"):
+            kernel = load(text, rod, self.backend)
+        times = np.linspace(0.0, scene.run.until, frames)
+        _check_room(frames, len(rod.state))
+        atol = tolerances(rod, setting.rtol, scene.run.atol, _unit_of_energy(scene, rod, kernel))
+        done = begin(rod.state)
+        start = time.perf_counter()
+        with progress(scene.title) as report:
+            if len(done) == len(times):  # it was complete when another one was interrupted
+                trajectory = Trajectory(times, done, 0, 0, 0, True)
+            else:
+                to_come = times[len(done) - 1 :]
+                rest = integrate(
+                    kernel, done[-1], to_come, setting.method, setting.rtol, atol, report, frame, switches_of(scene)
+                )
+                states = np.concatenate([done[:-1], rest.states])
+                trajectory = replace(rest, times=times[: len(states)], states=states)
+        return Attempt(setting, rod, kernel, trajectory, text, time.perf_counter() - start)
+
+
+def tolerances(rod: SemiDiscrete, rtol: float, atol: float | None, energy: float) -> Array:
+    """Absolute tolerance of each state entry, (size,): `atol` for strains, or rtol where none is given.
+
+    Strains count by the displacement they make: stretches as they are, curvatures in units of 1 / length, and so
+    for the carried pose. Energies, and stresses of frozen modes, count by the energy stored at the start, or that of
+    bending by a radian.
+    """
+    strain = rtol if atol is None else atol
+    length, group = float(rod.mesh.edges[-1]), rod.structure.group
+    points = rod.mesh.elements * rod.mesh.degree
+    turns = [strain] * group.translations + [strain / length] * group.rotations
+    stresses = [strain * energy / length] * group.translations + [strain * energy] * group.rotations
+    held = rod.structure.frozen
+    turn = np.repeat([s if frozen else e for e, s, frozen in zip(turns, stresses, held, strict=True)], points)
+    carried = [strain * length] * group.translations + [strain] * (rod.structure.carried - group.translations)
+    return np.concatenate([turn, carried[: rod.structure.carried], [strain * energy] * 2])
+
+
+def _unit_of_energy(scene: Scene, rod: SemiDiscrete, kernel: NativeRod | NumpyRod) -> float:
+    """Energy stored at the start, or that of bending the softest way by a radian if that is more."""
+    model, group = scene.model, scene.model.group
+    stiff = stiffnesses(model)
+    free = [i for i in range(group.dimension) if not rod.structure.frozen[i]]
+    # bending by a radian, stretching by the length
+    units = [
+        stiff[i] * model.length ** (1 if i < group.translations else -1)
+        for i in ([i for i in free if i >= group.translations] or free)
+    ]
+    return max(kernel.observe(0.0, rod.state)[2], min(units))
+
+
+def chosen_setting(scene: Scene) -> Setting | None:
+    """The setting the scene fixes, if it fixes any part of one."""
+    run = scene.run
+    if run.elements is None and run.degree is None and run.rtol is None and run.atol is None:
+        return None
+    rtol = run.rtol if run.rtol is not None else (run.accuracy or DEFAULT_ACCURACY) / 10
+    return Setting(run.elements or 1, run.degree or 8, rtol, run.method or "cvode")
+
+
+def drift(rod: SemiDiscrete, trajectory: Trajectory) -> float:
+    """How far an end strayed that is held in its place, though nothing but the march of poses says so; a length."""
+    structure = rod.structure
+    first, last = (rod.poses(trajectory.states[i], trajectory.times[i]).position for i in (0, -1))
+    if structure.joined:
+        return float(np.linalg.norm(last[-1] - last[0]))
+    far = -1 if structure.base == "left" else 0
+    kind = (structure.right if structure.base == "left" else structure.left).kind
+    if kind == "free":
+        return 0.0
+    home = first[far] if rod.guide is None else rod.guide.at(trajectory.times[-1])[: first.shape[-1]]
+    return float(np.linalg.norm(last[far] - home))
+
+
+def switches_of(scene: Scene) -> tuple[float, ...]:
+    """Instants at which a load of the scene switches."""
+    model = scene.model
+    loads = [end.force or () for end in (model.left, model.right)] + [
+        end.torque or () for end in (model.left, model.right)
+    ]
+    loads += [end.twist or () for end in (model.left, model.right)]
+    loads += [vector for effect in model.effects for vector in effect.values().values()]
+    loads += [model.law.stress or ()] if model.law else []
+    return tuple(t for load in loads for e in load for t in switch_times(e, scene.run.until, model.parameters))
+
+
+def _check_room(frames: int, size: int) -> None:
+    """Raises InputError if the states of all frames would not fit into memory."""
+    if frames * size > MOST_NUMBERS:
+        raise InputError(
+            f"at most {MOST_NUMBERS} numbers in a solution",
+            f"{frames} frames of {size} unknowns",
+            "keep fewer frames, or compute on fewer elements",
+            key="run.frames",
+        )
