@@ -16,6 +16,8 @@ import click
 from rich.console import Console
 
 from geocosserat.conductor.check import check as check_law
+from geocosserat.conductor.cost import MOST_SECONDS
+from geocosserat.conductor.cost import cost as measure_cost
 from geocosserat.conductor.derive import derive as derive_equations
 from geocosserat.conductor.derive import generate as generate_kernels
 from geocosserat.conductor.paper import paper as review_paper
@@ -24,6 +26,7 @@ from geocosserat.kernel.compile import CompileError
 from geocosserat.model.errors import InputError
 from geocosserat.results.atomic import write_bytes
 from geocosserat.results.checkpoint import NAME as CHECKPOINT
+from geocosserat.results.diagram_table import print_diagram
 from geocosserat.results.errors import FileError
 from geocosserat.results.progress import progress
 from geocosserat.results.summary import print_summary
@@ -97,6 +100,39 @@ def run(
     if not result.reached:
         click.echo(f"geocosserat: not reached: {result.reason}", err=True)
         sys.exit(NOT_REACHED)
+
+
+@main.command()
+@click.argument("scene", type=click.Path())
+@click.option("--out", type=click.Path(), help="Folder for cost.png, cost.svg and cost.json.")
+@click.option("--methods", default="cvode,radau", show_default=True, help="Which integrators, with commas between.")
+@click.option("--seconds", type=float, default=MOST_SECONDS, show_default=True, help="For all that is timed.")
+@SETTINGS
+@OVERWRITE
+@JSON
+@_one_message
+def cost(
+    scene: str,
+    out: str | None,
+    methods: str,
+    seconds: float,
+    settings: tuple[str, ...],
+    overwrite: bool,
+    as_json: bool,
+) -> None:
+    """What accuracy costs in time: SCENE computed in many ways, each timed."""
+    chosen = [name.strip() for name in methods.split(",")]
+    try:
+        found = measure_cost(
+            scene, out, settings=settings, methods=chosen, seconds=seconds, overwrite=overwrite
+        )
+    except KeyboardInterrupt:
+        click.echo("geocosserat: interrupted", err=True)
+        sys.exit(NOT_REACHED)
+    if as_json:
+        _print_json(found.fields)
+    else:
+        print_diagram(found.diagram, Console(), [str(file) for file in found.files])
 
 
 @main.command()

@@ -48,7 +48,7 @@ class Run:
         raise AttributeError(f"a run has no field {name!r}; it has {', '.join(fields)}")
 
 
-def _tell(message: str) -> None:
+def tell(message: str) -> None:
     print(message, file=sys.stderr)
 
 
@@ -75,7 +75,7 @@ def run(
     folder = None if out is None else Path(out)
     if resume and folder is None:
         raise InputError("the folder of the interrupted run", "none", "name it with --out", key="--resume")
-    backend = choose_backend(read.run.backend, _tell)
+    backend = choose_backend(read.run.backend, tell)
     keeper = Keeper(folder, _key(read), resume)
     if folder is not None:
         claim(folder, overwrite or resume, (SOLUTION, PICTURE, SUMMARY, CHECKPOINT))
@@ -107,7 +107,7 @@ def _said_of(law: Law) -> dict[str, Any]:
     with suppress(OutOfBounds):
         found = bounded(partial(check_law, law, brief=True), MOST_SECONDS)
         if found.verdict != "passive":
-            _tell(
+            tell(
                 f"the law {law.name} is {found.verdict}: "
                 "the rod may gain energy from it, and no method can promise that energy only falls"
             )
@@ -122,7 +122,7 @@ def _simulate(scene: Scene, backend: str, clock: Clock, keeper: Keeper) -> Found
     except CompileError as error:
         if scene.run.backend == "c":
             raise
-        _tell(f"{error}; running on numpy instead")
+        tell(f"{error}; running on numpy instead")
         return search(Simulator(scene, "numpy", kernel_text, clock), keeper)
 
 

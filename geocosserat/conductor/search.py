@@ -56,10 +56,15 @@ def search(simulate: Simulator, keeper: Keeper) -> Found:
         attempt = simulate(chosen, scene.run.frames, lambda start: keeper.begin(0, start), keeper.frame)
         seconds["solve"] = attempt.seconds
         return Found(attempt, None, attempt.trajectory.reached, attempt.trajectory.reason, ())
-    found = _Search(simulate, keeper, scene.run.accuracy or DEFAULT_ACCURACY).found()
+    found = planned(simulate, keeper, scene.run.accuracy or DEFAULT_ACCURACY)
     seconds["solve"] = found.attempt.seconds
     seconds["plan"] = sum(run["seconds"] for run in found.plan) - found.attempt.seconds
     return found
+
+
+def planned(simulate: Simulator, keeper: Keeper, accuracy: float) -> Found:
+    """The simulation that a plan finds for an accuracy, whatever the scene says of it."""
+    return _Search(simulate, keeper, accuracy).found()
 
 
 class _Search:

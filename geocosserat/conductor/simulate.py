@@ -81,6 +81,7 @@ class Simulator:
         _check_room(frames, len(rod.state))
         atol = tolerances(rod, setting.rtol, scene.run.atol, _unit_of_energy(scene, rod, kernel))
         done = begin(rod.state)
+        switches = switches_of(scene)
         start = time.perf_counter()
         with progress(scene.title) as report:
             if len(done) == len(times):  # it was complete when another one was interrupted
@@ -88,7 +89,7 @@ class Simulator:
             else:
                 to_come = times[len(done) - 1 :]
                 rest = integrate(
-                    kernel, done[-1], to_come, setting.method, setting.rtol, atol, report, frame, switches_of(scene)
+                    kernel, done[-1], to_come, setting.method, setting.rtol, atol, report, frame, switches
                 )
                 states = np.concatenate([done[:-1], rest.states])
                 trajectory = replace(rest, times=times[: len(states)], states=states)
