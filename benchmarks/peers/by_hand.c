@@ -6,7 +6,8 @@
  *
  * DEGREE is the number of strains: 3 in the plane, 6 in space. The state is [DEGREE][cells], cells even, 4 or more.
  *
- * Source: E. Hairer and G. Wanner, Solving Ordinary Differential Equations II (1996), section IV.7 and table IV.7.2.
+ * Source: E. Hairer and G. Wanner, Solving Ordinary Differential Equations II (1996), sections IV.7 and VI.4, and their code
+ * RODAS, whose coefficients these are.
  */
 #define _POSIX_C_SOURCE 200112L /* posix_memalign */
 #include <math.h>

@@ -61,6 +61,7 @@ class Simulator:
         self, scene: Scene, backend: str, kernel_text: Callable[[RodStructure], KernelText], clock: Clock
     ) -> None:
         self.scene, self.backend, self.kernel_text, self.clock = scene, backend, kernel_text, clock
+        self._last: tuple[tuple[int, int], SemiDiscrete, NativeRod | NumpyRod, KernelText] | None = None
 
     def __call__(
         self,
@@ -72,11 +73,7 @@ class Simulator:
         """A simulation that keeps so many states. begin: of the start (size,) the states (frames, size) that are there
         already; frame: is told of each that comes."""
         scene = self.scene
-        with self.clock("derive"):
-            rod = discretise(scene, setting.elements, setting.degree)
-            text = self.kernel_text(rod.structure)
-        with self.clock("compile"):
-            kernel = load(text, rod, self.backend)
+        rod, kernel, text = self._on(setting.elements, setting.degree)
         times = np.linspace(0.0, scene.run.until, frames)
         _check_room(frames, len(rod.state))
         atol = tolerances(rod, setting.rtol, scene.run.atol, _unit_of_energy(scene, rod, kernel))
@@ -94,6 +91,17 @@ class Simulator:
                 states = np.concatenate([done[:-1], rest.states])
                 trajectory = replace(rest, times=times[: len(states)], states=states)
         return Attempt(setting, rod, kernel, trajectory, text, time.perf_counter() - start)
+
+    def _on(self, elements: int, degree: int) -> tuple[SemiDiscrete, NativeRod | NumpyRod, KernelText]:
+        """The rod on a mesh, its kernel, and that kernel's text; kept until another mesh is wanted."""
+        size = elements, degree
+        if self._last is None or self._last[0] != size:
+            with self.clock("derive"):
+                rod = discretise(self.scene, elements, degree)
+                text = self.kernel_text(rod.structure)
+            with self.clock("compile"):
+                self._last = size, rod, load(text, rod, self.backend), text
+        return self._last[1:]
 
 
 def tolerances(rod: SemiDiscrete, rtol: float, atol: float | None, energy: float) -> Array:
