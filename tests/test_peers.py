@@ -8,7 +8,7 @@ from benchmarks.peers.problems import planar, reference_error, spatial
 from benchmarks.peers.search import Found, Solver, extrapolated
 from benchmarks.peers.writing import plain, table
 
-pytestmark = pytest.mark.usefixtures("c_compiler")
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("c_compiler")]
 PROBLEMS = pytest.mark.parametrize("problem", [planar(1e4), spatial()], ids=lambda p: p.motion)
 
 
@@ -17,7 +17,6 @@ def orders(errors):
     return np.log2(np.divide(errors[:-1], errors[1:]))
 
 
-@pytest.mark.slow
 @PROBLEMS
 def test_the_reference_is_converged(problem):
     assert reference_error(problem) < 1e-11

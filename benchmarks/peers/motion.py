@@ -35,6 +35,7 @@ LIMITS = {NUMPY: (-6, 2.0), NUMBA: (-6, 2.0), EXUDYN: (-3, 1.0)}
 MISSING = "not measured: {} is not installed"
 IMPOSSIBLE = "not possible: its dashpots do not turn with the rod"
 DEGREES = (*range(3, 13), 14, 16, 18, 20)
+LOOSEST = 30.0
 STEPS = tuple(25 * 2**k for k in range(9))
 RTOLS = tuple(round(10 ** (-k / 2), 14) for k in range(2, 27))
 
@@ -51,15 +52,15 @@ def solvers(problem: Problem) -> dict[str, Solver | str]:
     ]
     scipys: list[Sequence[Setting]] = [[(*n, method) for n in cells(1500)] for method in lines.METHODS]
     found: dict[str, Solver | str] = {
-        OURS: Solver(partial(ours.solve, problem), mine, RTOLS),
-        NUMPY: Solver(partial(lines.solve, problem), scipys, RTOLS[:16]),
+        OURS: Solver(partial(ours.solve, problem), mine, RTOLS, LOOSEST),
+        NUMPY: Solver(partial(lines.solve, problem), scipys, RTOLS[:16], LOOSEST),
         NUMBA: MISSING.format("numba"),
-        HAND: Solver(partial(by_hand.solve, problem), [cells(30_000)], RTOLS),
+        HAND: Solver(partial(by_hand.solve, problem), [cells(30_000)], RTOLS, LOOSEST),
         EXUDYN: MISSING.format("exudyn") if problem.motion == "planar" else IMPOSSIBLE,
     }
     if compiled_lines:
         theirs = [[(*n, jacobians) for n in cells(1500)] for jacobians in compiled_lines.JACOBIANS]
-        found[NUMBA] = Solver(partial(compiled_lines.solve, problem), theirs, RTOLS[:16])
+        found[NUMBA] = Solver(partial(compiled_lines.solve, problem), theirs, RTOLS[:16], LOOSEST)
     if multibody and problem.motion == "planar":
         found[EXUDYN] = Solver(partial(multibody.relax, problem), [[(n,) for n in (2, 4, 6, 8, 12)]], STEPS)
     return found

@@ -8,6 +8,7 @@ fastest of them counts. Errors are not monotone in the tolerance: every solver m
 included.
 """
 
+import math
 import statistics
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
@@ -20,7 +21,7 @@ Solve = Callable[..., tuple[float, float, int]]
 
 def _foreseen(floors: Sequence[float]) -> float:
     """The least error of the next grid if it gains what the last one did; 0 where nothing is known."""
-    if len(floors) < 2 or not floors[-2] < float("inf"):
+    if len(floors) < 2 or not floors[-2] < math.inf:
         return 0.0
     return floors[-1] * min(GAIN, floors[-1] / floors[-2])
 
@@ -39,8 +40,11 @@ class Found:
 class Solver:
     """One solver on one problem, remembering what it has run."""
 
-    def __init__(self, solve: Solve, families: Sequence[Sequence[Setting]], rtols: Sequence[float]) -> None:
-        self._solve, self._families, self._rtols = solve, families, rtols
+    def __init__(
+        self, solve: Solve, families: Sequence[Sequence[Setting]], rtols: Sequence[float], loosest: float = math.inf
+    ) -> None:
+        """loosest: tolerances above this, times the root of the error asked for, are passed over."""
+        self._solve, self._families, self._rtols, self._loosest = solve, families, rtols, loosest
         self._known: dict[Setting, tuple[float, float] | None] = {}
 
     def cheapest(self, target: float, repeats: int) -> Found | None:
@@ -53,7 +57,7 @@ class Solver:
                     floors.append(foreseen)
                     continue
                 errors, least = self._tried(grid, target, good)
-                floors.append(min(errors, default=float("inf")))
+                floors.append(min(errors, default=math.inf))
                 if good and least > min(good)[0]:
                     break
         return self._timed(sorted(good)[:FINALISTS], repeats) if good else None
@@ -61,11 +65,11 @@ class Solver:
     def _tried(self, grid: Setting, target: float, good: list[tuple[float, Setting]]) -> tuple[list[float], float]:
         """Tries a grid with all tolerances that may be worth it: their errors, and the least of their seconds."""
         errors: list[float] = []
-        least = float("inf")
-        for rtol in self._rtols:
+        least = math.inf
+        for rtol in (r for r in self._rtols if r <= self._loosest * math.sqrt(target)):
             run = self._run((*grid, rtol))
             if run is None:
-                errors.append(float("inf"))
+                errors.append(math.inf)
                 continue
             error, seconds = run
             least = min(least, seconds)
@@ -89,7 +93,10 @@ class Solver:
         return self._known[setting]
 
     def _timed(self, finalists: Sequence[tuple[float, Setting]], repeats: int) -> Found:
-        runs = {setting: [self._solve(*setting) for _ in range(repeats)] for _, setting in finalists}
+        runs: dict[Setting, list[tuple[float, float, int]]] = {setting: [] for _, setting in finalists}
+        for _ in range(repeats):  # in turns: what disturbs the machine disturbs all of them
+            for setting, done in runs.items():
+                done.append(self._solve(*setting))
         setting = min(runs, key=lambda s: min(run[1] for run in runs[s]))
         seconds = [run[1] for run in runs[setting]]
         return Found(runs[setting][0][0], min(seconds), statistics.median(seconds), setting)
