@@ -177,7 +177,7 @@ def test_a_passive_rod_without_loads_never_gains_energy(coefficients: Any, ends:
 @pytest.mark.parametrize(("sign", "verdict"), [(1.0, "passive"), (-1.0, "active")])
 def test_grips_that_stretch_a_rod_to_and_fro_work_what_its_viscosity_says(sign: float, verdict: str) -> None:
     """h1 = 1 + a sin(2 pi t), once, between a clamped end and a driven one: eta (2 pi a)^2 / 2, taken or given, as the
-    check of the law says; drag on the grips aside."""
+    check of the law says; drag on the grips aside. What the rod consists of says that it is viscous."""
     eta, a = 0.3 * sign, 0.2
     law = {"motion": "planar", "stress": {"F1": f"2*(h1 - 1) + ({eta})*h1_dot", "F2": "h2", "M": "Pi"}}
     scene = {
@@ -188,6 +188,8 @@ def test_grips_that_stretch_a_rod_to_and_fro_work_what_its_viscosity_says(sign: 
     assert geocosserat.check(law).verdict == verdict
     run = simulate(scene, 1, 1, 1e-10, "auto", method="radau")
     assert run.contents["law"]["verdict"] == verdict
+    assert "viscosity" in run.contents["terms"]
+    assert run.contents["fields"] == ["h1", "h2", "Pi", "F1"]
     assert run.ledger["dissipated"] == pytest.approx(0.5 * eta * (2 * np.pi * a) ** 2, rel=1e-7)
     assert run.ledger["work"] == pytest.approx(0.5 * eta * (2 * np.pi * a) ** 2, rel=1e-7)
     assert abs(run.ledger["stored"]) < 1e-8
