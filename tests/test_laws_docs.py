@@ -69,7 +69,7 @@ def test_the_examples_show_what_the_page_says_of_them() -> None:
     """Which is stable, which is not, which has a condition, a witness, an energy, and why."""
     found = {path.stem: geocosserat.check(path) for path in LAWS}
     stable = {name for name, f in found.items() if f.stability["parabolic"] and f.stability["definite"]}
-    assert stable == {"isotropic", "tension_stiffening", "piecewise", "odd_planar", "beating", "motor"}
+    assert stable == {"isotropic", "tension_stiffening", "piecewise", "odd_planar", "beating", "motor", "kelvin_voigt"}
     assert found["tension_stiffening"].stability["convex"] is True
     assert found["tension_stiffening"].stability["grades"]["definite"] == "proved"
     assert found["hertz"].stability["lost"][0]["where"]["h1"] == pytest.approx(1.0)
@@ -77,6 +77,8 @@ def test_the_examples_show_what_the_page_says_of_them() -> None:
     assert found["odd_planar"].conditions == ["passive if and only if a = 0"]
     assert found["vortex"].stress["curl"] == []
     assert found["vortex"].stress["witness"]["work"] == pytest.approx(2 * np.pi)
+    assert found["kelvin_voigt"].viscous["dissipative"] is True
+    assert found["kelvin_voigt"].viscous["grade"] == "proved"
     assert found["beating"].stress["timed"] is True
     assert found["beating"].stress["conservative"] is True
     assert found["motor"].wrench["exact"] is False
@@ -186,12 +188,12 @@ def test_the_scene_of_the_page_is_fed_by_its_law(tmp_path: Path, capsys: pytest.
     ("changes", "wording"),
     [
         ({"wrench": {"f1": "theta"}}, "theta must be the argument of cos or sin"),
-        ({"stress": {"M": "Pi + Pi_dot"}}, "not available in this version"),
+        ({"stress": {"M": "Pi + Pi_dot**3"}}, "a stress that is linear in the rates of strain"),
         ({"parameters": {"a": {"symbol": True}}}, "a parameter left open"),
     ],
 )
 def test_what_cannot_be_run_is_refused(changes: dict[str, Any], wording: str) -> None:
-    """An angle by itself, rates, and parameters left open."""
+    """An angle by itself, rates that are not linear, and parameters left open."""
     law = {"motion": "planar", "stress": {"M": "Pi"}, "friction": {"matrix": [1, 2, 0.01]}, **changes}
     scene = {"rod": {"motion": "planar", "length": 1.0, "law": law}, "run": {"until": 0.1}}
     with pytest.raises(InputError, match=wording):

@@ -53,7 +53,7 @@ def take_away(source: KernelSource, rod: SemiDiscrete, until: float, title: str,
 
     def render(template: str) -> str:
         known = {"title": one_line(title), "degree": rod.mesh.degree}
-        frozen = [int(held) for held in rod.structure.frozen]
+        frozen = [int(fixed) for fixed in rod.structure.constrained]
         return environment().get_template(template).render(**known, d=rod.structure.group.dimension, frozen=frozen)
 
     if backend == "c":

@@ -52,6 +52,8 @@ def _tapes(p: Pointwise) -> dict[str, Tape]:
         "tangent": Tape(tangent.steps, named),
         "turn": Tape((), tuple(p.turn.items())),
         "strain_rate": record(p.strain_rate),
+        "gap": (gap := record(p.gap)),
+        "gap_tangent": jacobian(gap, (*p.state, *sp.symbols(f"rate_1:{d + 1}")), "gap"),
         "velocity": record(
             {name: e for name, e in p.velocity.items() if not name.startswith("slip")},
             given={name: e for name, e in p.velocity.items() if name.startswith("slip")},
@@ -116,7 +118,7 @@ def generate(structure: RodStructure, title: str = "") -> KernelSource:
     tapes = _tapes(p)
     group = structure.group
     name = identity(structure)
-    counted = ("stress", "strain_rate", "surroundings", "velocity", "tangent")
+    counted = ("stress", "strain_rate", "surroundings", "velocity", "tangent", *(("gap",) if p.gap else ()))
     operations = {key: tapes[key].operations for key in counted}
     places = {place: [c.name for c in structure.at(place)] for place in ("uniform", "point", "node")}
     signature = {
@@ -127,6 +129,7 @@ def generate(structure: RodStructure, title: str = "") -> KernelSource:
         "state": list(structure.state_names),
         "twist": list(group.twist),
         "frozen": [name for name, held in zip(group.strain, structure.frozen, strict=True) if held],
+        "viscous": [name for name, here in zip(group.strain, structure.viscous, strict=True) if here],
         "carried": structure.carried,
         "sight": structure.sight,
         "base": structure.base,

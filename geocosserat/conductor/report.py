@@ -62,6 +62,7 @@ def _contents(scene: Scene, attempt: Attempt) -> dict[str, Any]:
         "fields": [*structure.state_names, *(["pose of the base"] if structure.carried else [])],
         "terms": [
             "elasticity",
+            *(["viscosity"] if any(structure.viscous) else []),
             "friction",
             *(f"frozen {name}" for name in model.frozen),
             *(["active reference"] if structure.active else []),

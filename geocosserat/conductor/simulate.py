@@ -108,18 +108,19 @@ def tolerances(rod: SemiDiscrete, rtol: float, atol: float | None, energy: float
     """Absolute tolerance of each state entry, (size,): `atol` for strains, or rtol where none is given.
 
     Strains count by the displacement they make: stretches as they are, curvatures in units of 1 / length, and so
-    for the carried pose. Energies, and stresses of frozen modes, count by the energy stored at the start, or that of
-    bending by a radian.
+    for the carried pose. Energies, and stresses that the state holds, count by the energy stored at the start, or that
+    of bending by a radian.
     """
     strain = rtol if atol is None else atol
     length, group = float(rod.mesh.edges[-1]), rod.structure.group
     points = rod.mesh.elements * rod.mesh.degree
     turns = [strain] * group.translations + [strain / length] * group.rotations
     stresses = [strain * energy / length] * group.translations + [strain * energy] * group.rotations
-    held = rod.structure.frozen
-    turn = np.repeat([s if frozen else e for e, s, frozen in zip(turns, stresses, held, strict=True)], points)
+    rows = [s if held else e for e, s, held in zip(turns, stresses, rod.structure.frozen, strict=True)]
+    rows += [s for s, here in zip(stresses, rod.structure.viscous, strict=True) if here]
+    along = np.repeat(rows, points)
     carried = [strain * length] * group.translations + [strain] * (rod.structure.carried - group.translations)
-    return np.concatenate([turn, carried[: rod.structure.carried], [strain * energy] * 2])
+    return np.concatenate([along, carried[: rod.structure.carried], [strain * energy] * 2])
 
 
 def _unit_of_energy(scene: Scene, rod: SemiDiscrete, kernel: NativeRod | NumpyRod) -> float:

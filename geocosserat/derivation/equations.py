@@ -1,7 +1,7 @@
 """The field equations of one rod, derived from its group and its laws: nothing in them is transcribed.
 
 From the structure constants: compatibility dE/dt = V' + ad_E V and balance S' + ad*_E S + j = 0. From the
-model: the stress S(E), the frozen modes, the wrench j, the ends. What the scene lacks does not occur.
+model: the stress S(E) or S(E, dE/dt), the frozen modes, the wrench j, the ends. What the scene lacks does not occur.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from geocosserat.derivation.notation import T, U, fields, symbol
 from geocosserat.derivation.orientation import axes_seen, orientation, place, places_seen
 from geocosserat.derivation.records import Equation, Equations, FieldEquations, Vector
 from geocosserat.model.expressions import Expression
-from geocosserat.model.law import Law
+from geocosserat.model.law import Law, rates
 from geocosserat.model.records import RodModel
 
 
@@ -92,17 +92,19 @@ def derive(model: RodModel) -> FieldEquations:
         left=left,
         right=right,
         energy=elasticity.energy,
-        dissipation=_quadratic(friction, slip),
+        dissipation=_quadratic(friction, slip) + elasticity.lost,
     )
 
 
 @dataclass(frozen=True)
 class _Elasticity:
-    """Stress of every mode, and its energy density if it has one; steps: whether the stress steps by itself."""
+    """Stress of every mode, and its energy density if it has one; steps: whether the stress steps by itself; lost: the
+    power density of its viscous part."""
 
     stress: Vector
     energy: sp.Expr | None
     steps: bool
+    lost: sp.Expr = sp.S.Zero
 
 
 def _of_stiffness(model: RodModel, reference: Vector, E: Vector) -> _Elasticity:
@@ -117,10 +119,14 @@ def _of_stiffness(model: RodModel, reference: Vector, E: Vector) -> _Elasticity:
 
 def _of_law(law: Law, E: Vector) -> _Elasticity:
     values = dict(zip((symbol(name) for name in law.group.strain), E, strict=True))
-    stress = tuple(e.xreplace(values) for e in _vector(law.stress or ()))
+    speeds = {symbol(name): e.diff(T) for name, e in zip(rates(law.group), E, strict=True)}
+    said, still = _vector(law.stress or ()), dict.fromkeys(speeds, sp.S.Zero)
+    stress = tuple(e.xreplace({**values, **speeds}) for e in said)
+    viscous = (e - e.xreplace(still) for e in said)
+    lost = sp.Add(*(e.xreplace({**values, **speeds}) * x for e, x in zip(viscous, speeds.values(), strict=True)))
     known = law.energy is not None and not law.remainder
     energy = to_sympy(law.energy).xreplace(values) if known and law.energy is not None else None
-    return _Elasticity(stress, energy, any(e.has(sp.Heaviside) for e in stress))
+    return _Elasticity(stress, energy, any(e.has(sp.Heaviside) for e in stress), distributed(lost))
 
 
 def _steps(stiffness: Array, reference: Vector, held: Sequence[bool]) -> bool:

@@ -26,6 +26,7 @@ _BODY: Final = Formula(" + j(u, t)", " + j(u, t)", " + j(u, t)")
 _WORLD: Final = Formula(" + j(φ)", " + j(phi)", r" + j(\varphi)")
 _LINEAR: Final = Formula("Σ = K (E - Ē)", "S = K (E - E0)", r"\Sigma = K (E - \bar E)")
 _LAW: Final = Formula("Σ = Σ(E)", "S = S(E)", r"\Sigma = \Sigma(E)")
+_VISCOUS: Final = Formula("Σ = Σ(E, Ė)", "S = S(E, E_t)", r"\Sigma = \Sigma(E, \dot E)")
 _STILL: Final = Formula("j = -Γ V", "j = -Gamma V", r"j = -\Gamma V")
 _MOVING: Final = Formula("j = -Γ (V - Vₘ)", "j = -Gamma (V - V_m)", r"j = -\Gamma (V - V_m)")
 _MOTION: Final = Formula(
@@ -69,7 +70,7 @@ def constraints(equations: FieldEquations) -> list[Section]:
 
 def stress(equations: FieldEquations) -> Section:
     """The stress by its law, and which of it has none."""
-    formula = _LAW if equations.model.law else _LINEAR
+    formula = _VISCOUS if equations.viscous else _LAW if equations.model.law else _LINEAR
     remark = multipliers_in_words(equations) if equations.multipliers else ""
     return Section("Stress", equations.stress_law, formula if equations.stress_law else None, remark=remark)
 
@@ -142,13 +143,14 @@ def end(end: EndConditions) -> Section:
 
 
 def work(equations: FieldEquations) -> list[Section]:
-    """The elastic energy and the power lost to friction, as far as there are any."""
+    """The elastic energy and the power lost to friction and viscosity, as far as there are any."""
     elastic = [Equation(ENERGY, equations.energy)] if equations.energy else []
     lost = [Equation(DISSIPATION, equations.dissipation)] if equations.dissipation != 0 else []
+    to = "friction and viscosity" if equations.viscous else "friction"
     remark = {
-        (True, True): "The elastic energy and the power lost to friction, both per length.",
+        (True, True): f"The elastic energy and the power lost to {to}, both per length.",
         (True, False): "The elastic energy per length.",
-        (False, True): "The power lost to friction per length.",
+        (False, True): f"The power lost to {to} per length.",
     }
     if not elastic and not lost:
         return []

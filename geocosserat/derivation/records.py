@@ -9,7 +9,7 @@ import sympy as sp
 
 from geocosserat.algebra.groups import Group
 from geocosserat.derivation.convert import to_sympy
-from geocosserat.derivation.notation import field_names, is_field, parameter_names
+from geocosserat.derivation.notation import T, field_names, is_field, parameter_names
 from geocosserat.derivation.orientation import Carried
 from geocosserat.model.expressions import symbols
 from geocosserat.model.records import RodModel
@@ -60,15 +60,15 @@ class FieldEquations:
     the stress that no law gives, because they keep a frozen mode at its reference.
 
     ``compatibility``: dE/dt = V' + ad_E V, all d rows; that of a frozen mode is a constraint on V. ``balance``:
-    S' + ad*_E S + j = 0. ``stress_law``: S(E). ``wrench_law``: j = -Gamma (V - V_medium) + effects.
-    ``orientation_rates``, ``orientation_slopes``, ``position_rates``, ``position_slopes``: in t and in u.
+    S' + ad*_E S + j = 0. ``stress_law``: S(E), of a viscous law S(E, dE/dt). ``wrench_law``: j = -Gamma (V - V_medium)
+    + effects. ``orientation_rates``, ``orientation_slopes``, ``position_rates``, ``position_slopes``: in t and in u.
     ``motion``: the balance solved for the friction, Gamma V = S(E)' + ad*_E S(E) + Gamma V_medium + effects, which
     with ``compatibility`` and the rates is the closed system; a row without friction has nothing on the left.
     Where the law has steps in u, ``motion`` keeps the stress, which is continuous there, and ``stress_law`` closes
     it. ``left``, ``right``: the ends.
 
     ``energy``: elastic energy per length at rest (force), None unless the stiffness is symmetric.
-    ``dissipation``: power lost to friction against the medium per length at rest (force / time).
+    ``dissipation``: power lost to friction against the medium, and to viscosity, per length at rest (force / time).
     """
 
     model: RodModel
@@ -152,10 +152,16 @@ class FieldEquations:
         return self.compatibility + self.motion + laws + self.orientation_rates + self.position_rates
 
     @property
+    def viscous(self) -> bool:
+        """Whether some stress answers to a rate of strain."""
+        return any(e.right.has(*(x.diff(T) for x in self.turn if is_field(x))) for e in self.stress_law)
+
+    @property
     def terms(self) -> tuple[str, ...]:
-        """What the rod feels, in words: elasticity, friction, the kinds of effects, the loaded and driven ends."""
+        """What the rod feels, in words: elasticity, viscosity, friction, kinds of effects, loaded and driven ends."""
         present = [
             ("elasticity", bool(self.stress_law)),
+            ("viscosity", self.viscous),
             ("active reference", any("t" in symbols(e) for e in self.model.reference)),
             ("friction", self.dissipation != 0),
         ]

@@ -9,6 +9,7 @@ import sympy as sp
 from geocosserat.derivation.convert import to_sympy
 from geocosserat.discretisation.structure import ONE, ZERO, LawStructure, Matrix, RodStructure
 from geocosserat.model.expressions import Expression
+from geocosserat.model.law import rates
 
 Vector = tuple[sp.Expr, ...]
 
@@ -41,9 +42,9 @@ class size(sp.Function):  # type: ignore[misc]  # noqa: N801, RUF100
 class Material:
     """At one Gauss point, in terms of turn and coefficients; densities per length of the rod.
 
-    stress (d; force, force x length). energy (force), in terms of turn and stress. supply, loss: power densities
-    (force / time): of what moves the reference or changes the law in time, and of the stress that stores nothing, in
-    terms of rate_i; None where there is none.
+    stress (d; force, force x length), of viscous modes in terms of rate_i too. energy (force), in terms of turn and
+    stress. supply, loss: power densities (force / time): of what moves the reference or changes the law in time, and of
+    the stress that stores nothing, in terms of rate_i, of viscous modes of the stress itself; None where there is none.
     """
 
     stress: Vector
@@ -67,8 +68,9 @@ def material(structure: RodStructure, turn: Iterable[sp.Expr], stress: Iterable[
 
 
 def _of_law(structure: RodStructure, law: LawStructure, turn: Iterable[sp.Expr]) -> Material:
-    values = dict(zip(structure.group.strain, turn, strict=True))
-    lost = [formula(e, values) * sp.Symbol(f"rate_{i}") for i, e in enumerate(law.remainder, start=1)]
+    rate = sp.symbols(f"rate_1:{structure.group.dimension + 1}")
+    values = dict(zip((*structure.group.strain, *rates(structure.group)), (*turn, *rate), strict=True))
+    lost = [formula(e, values) * x for e, x in zip(law.remainder, rate, strict=bool(law.remainder))]
     return Material(
         stress=tuple(formula(e, values) for e in law.stress),
         energy=formula(law.energy, values),

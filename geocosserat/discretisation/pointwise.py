@@ -29,11 +29,14 @@ Named = Mapping[str, sp.Expr]
 class Pointwise:
     """Named expressions, component by component (1-based in the names).
 
-    state: what the state holds at a point: the turn, of frozen modes the stress (their turn is the reference)
+    state: what the state holds at a point: the turn, of frozen modes the stress (their turn is the reference); then the
+    stress of viscous modes
     turn: turn_i, in terms of the state, of frozen modes the reference
-    stress: F1, ... of the modes that are free, in terms of the state and coefficients
+    stress: F1, ... of the modes that are free and not viscous, in terms of the state and coefficients
     pull: pull_i, in terms of the state and the stress
     strain_rate: rate_i, in terms of the state, slope_i (of the twist) and value_i; for frozen modes what must vanish
+    gap: gap_i, what must vanish of viscous modes (counted by themselves): their stress by its law, in terms of the
+    state and rate_i, less the one in the state
     velocity: v1, ... in terms of drive_i (force density that friction balances) and mobility; slip_i, relative to
     the medium, and medium_i as a name, if the medium moves
     energy: energy, elastic energy density, in terms of the state and the stress
@@ -56,6 +59,7 @@ class Pointwise:
     stress: Named
     pull: Named
     strain_rate: Named
+    gap: Named
     velocity: Named
     energy: Named
     supply: Named
@@ -119,14 +123,16 @@ def _formulas(stem: str, formulas: Iterable[Expression]) -> Named:
 
 def pointwise(structure: RodStructure) -> Pointwise:
     """The pointwise expressions of a rod with this structure."""
-    group, frozen = structure.group, structure.frozen
+    group, frozen, viscous = structure.group, structure.frozen, structure.viscous
     d = group.dimension
     state = [sp.Symbol(name) for name in structure.state_names]
     rest = [entry(name) for name in structure.reference]
-    turn = np.array([r if held else s for s, r, held in zip(state, rest, frozen, strict=True)], dtype=object)
+    turn = np.array([r if held else s for s, r, held in zip(state[:d], rest, frozen, strict=True)], dtype=object)
     stress = np.array([sp.Symbol(name) for name in group.stress], dtype=object)
     slope, value, drive = _symbols("slope", d), _symbols("value", d), _symbols("drive", d)
     made_of = material(structure, turn, stress)
+    given = [held or here for held, here in zip(frozen, viscous, strict=True)]  # by the state
+    gaps = (e - s for e, s, here in zip(made_of.stress, stress, viscous, strict=True) if here)
     ad = group.ad(turn)
     rates = slope + ad @ value
     moving = np.array([entry(name) for name in structure.reference_rate], dtype=object)
@@ -150,9 +156,10 @@ def pointwise(structure: RodStructure) -> Pointwise:
         group=group,
         state=tuple(state),
         turn={f"turn_{i + 1}": e for i, e in enumerate(turn)},
-        stress={name: e for name, e, held in zip(group.stress, made_of.stress, frozen, strict=True) if not held},
+        stress={name: e for name, e, known in zip(group.stress, made_of.stress, given, strict=True) if not known},
         pull={f"pull_{i + 1}": e for i, e in enumerate(-(group.coad(turn) @ stress))},
         strain_rate={f"rate_{i + 1}": e for i, e in enumerate(rates)},
+        gap={f"gap_{i}": e for i, e in enumerate(gaps, start=1)},
         velocity=velocity,
         energy={"energy": made_of.energy},
         supply={} if made_of.supply is None else {"supply": made_of.supply},

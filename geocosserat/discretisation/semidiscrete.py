@@ -27,7 +27,8 @@ class SemiDiscrete:
     uniform (.,), point (., points) and node (., nodes): coefficients in the order of the structure.
     base: pose that poses are marched from, at the start, the angle or the rotation matrix by rows, then the position;
     if it is driven and the kernel has to know, then its course as a table, and that of the other end if guided.
-    state (size,): the initial state; turn by component (of frozen modes the stress), carried pose, two energies.
+    state (size,): the initial state; turn by component (of frozen modes the stress), stress of viscous modes, carried
+    pose, two energies.
     anchor: position and orientation of the end that poses are marched from, at the start. course: its poses relative
     to that, if it is driven. guide: the poses at which the other end belongs, if it is driven as well.
     rest: the turn at rest, d expressions of u and t, and parameters: their parameters; what frozen modes are held at.
@@ -51,15 +52,16 @@ class SemiDiscrete:
 
     @property
     def unknowns(self) -> int:
-        """Turn or stress components at all Gauss points, plus a carried pose."""
-        return self.structure.group.dimension * self.mesh.elements * self.mesh.degree + self.structure.carried
+        """Turn and stress components at all Gauss points, plus a carried pose."""
+        return len(self.structure.state_names) * self.mesh.elements * self.mesh.degree + self.structure.carried
 
     @property
     def algebraic(self) -> Array:
-        """(size,) 1 for entries of the state that are fixed by a constraint, stresses of frozen modes; else 0."""
-        d, Q = self.structure.group.dimension, self.mesh.elements * self.mesh.degree
+        """(size,) 1 for entries of the state that are fixed by a constraint, stresses of frozen and viscous modes; else
+        0."""
+        rows = np.repeat([float(fixed) for fixed in self.structure.constrained], self.mesh.elements * self.mesh.degree)
         mask = np.zeros(len(self.state))
-        mask[: d * Q] = np.repeat([float(held) for held in self.structure.frozen], Q)
+        mask[: len(rows)] = rows
         return mask
 
     def turn(self, states: Array, times: Array | float = 0.0) -> Array:
@@ -174,7 +176,9 @@ def discretise(scene: Scene, elements: int, degree: int) -> SemiDiscrete:
         table.running.T,
         table.inner.T,
     ]
-    unknown = np.where(np.array(structure.frozen)[:, None], 0.0, turn)  # multipliers are found, not given
+    # stresses that constraints fix are found, not given
+    unknown = np.where(np.array(structure.frozen)[:, None], 0.0, turn)
+    viscous = np.zeros(sum(structure.viscous) * len(mesh.u_point))
     return SemiDiscrete(
         structure=structure,
         mesh=mesh,
@@ -183,7 +187,7 @@ def discretise(scene: Scene, elements: int, degree: int) -> SemiDiscrete:
         point=point,
         node=node,
         base=base,
-        state=np.concatenate([unknown.ravel(), carried, [0.0, 0.0]]),
+        state=np.concatenate([unknown.ravel(), viscous, carried, [0.0, 0.0]]),
         anchor=anchor,
         course=course,
         guide=guide,

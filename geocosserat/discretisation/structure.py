@@ -11,6 +11,7 @@ from typing import Literal
 
 from geocosserat.algebra.groups import Group, group_of
 from geocosserat.model.expressions import Expression, Number, symbols, to_text
+from geocosserat.model.law import rates
 
 Place = Literal["uniform", "point", "node"]
 Sight = Literal["nothing", "direction", "pose"]
@@ -57,10 +58,11 @@ class EndStructure:
 
 @dataclass(frozen=True)
 class LawStructure:
-    """A law in place of a stiffness: formulas of the turn by the names of its components, coefficients and t.
+    """A law in place of a stiffness: formulas of the turn and its rates by the names of their components, coefficients
+    and t.
 
     stress (d). energy: density of what is stored. remainder: the part of the stress that stores nothing, d formulas,
-    or none. supply: power density of what changes the law in time.
+    or none; of a viscous mode by the name of its stress. supply: power density of what changes the law in time.
     """
 
     stress: Formulas
@@ -77,6 +79,8 @@ class RodStructure:
     """The skeleton of a semi-discrete rod; equal structures have equal kernels.
 
     frozen (d): the modes held at their reference; their stress takes their place in the state.
+    viscous (d): the modes whose stress answers to rates of strain; it has a place of its own in the state, after the
+    turn, since the rates follow from it.
     stiffness, mobility (d, d) and reference, reference_rate (d): names of coefficients, or "0", or "1".
     law: instead of the stiffness; reference is then that of frozen modes alone.
     own: the part of the wrench whose work is a loss of the rod, less than nothing, d formulas; empty if there is none.
@@ -107,10 +111,23 @@ class RodStructure:
         return group_of(self.motion)
 
     @property
+    def viscous(self) -> tuple[bool, ...]:
+        """For each mode, whether its stress answers to rates of strain."""
+        stress = self.law.stress if self.law else (Number(0.0),) * self.group.dimension
+        return tuple(not symbols(e).isdisjoint(rates(self.group)) for e in stress)
+
+    @property
     def state_names(self) -> Row:
-        """What the state holds at each point, component by component: the turn, of frozen modes the stress."""
+        """What the state holds at each point, row by row: the turn, of frozen modes the stress; then that of viscous
+        ones."""
         group = self.group
-        return tuple(s if held else e for e, s, held in zip(group.strain, group.stress, self.frozen, strict=True))
+        turn = (s if held else e for e, s, held in zip(group.strain, group.stress, self.frozen, strict=True))
+        return (*turn, *(s for s, here in zip(group.stress, self.viscous, strict=True) if here))
+
+    @property
+    def constrained(self) -> tuple[bool, ...]:
+        """For each of these rows, whether it is a stress that a constraint fixes."""
+        return (*self.frozen, *(True for here in self.viscous if here))
 
     @property
     def sight(self) -> Sight:
@@ -158,7 +175,7 @@ class RodStructure:
 
     @property
     def losing(self) -> bool:
-        """Whether part of the stress stores nothing."""
+        """Whether part of the stress stores nothing, viscous or not."""
         return self.law is not None and present(self.law.remainder)
 
     @property

@@ -28,10 +28,11 @@ from geocosserat.model.expressions import (
     Symbol,
     constant,
     derivative,
+    fixed,
     substitute,
     symbols,
 )
-from geocosserat.model.law import Law
+from geocosserat.model.law import Law, at_rest, rates
 from geocosserat.model.records import End, RodModel
 from geocosserat.model.seen import AXES, Seen, cross, nothing, seen
 
@@ -83,9 +84,9 @@ class _Names:
             case _:
                 return e
 
-    def law(self, e: Expression, turn: Sequence[str]) -> Expression:
-        """`e` in terms of t, the turn and coefficients; u is one of them."""
-        written = self._inputs(e, "point", ("t", "u", *turn))
+    def law(self, e: Expression, group: Group) -> Expression:
+        """`e` in terms of t, the turn, its rates, the stress and coefficients; u is one of them."""
+        written = self._inputs(e, "point", ("t", "u", *group.strain, *rates(group), *group.stress))
         if "u" not in symbols(written):
             return written
         self.found["along"] = Coefficient("along", "point", Symbol("u"))
@@ -254,21 +255,36 @@ def _named_effects(names: _Names, effects: Sequence[Effect]) -> list[Effect]:
 
 
 def _law(names: _Names, law: Law, group: Group, frozen: Sequence[bool]) -> LawStructure:
-    """The law of the modes that are free. Without an energy that is known, the whole stress stores nothing."""
+    """The law of the modes that are free, where the others rest. Without an energy that is known, the whole stress
+    stores nothing."""
     assert law.stress is not None
-    remainder = law.remainder if law.energy is not None else law.stress
+    zero = Number(0.0)
+    stress = [zero if held else _resting(e, group, frozen) for e, held in zip(law.stress, frozen, strict=True)]
+    energy = law.energy if law.energy is not None else zero
+    remainder = list(law.remainder) if law.energy is not None else stress
+    for i, name in enumerate(group.stress):
+        if not symbols(stress[i]).isdisjoint(rates(group)):
+            # the whole stress, as the state has it, less what stores
+            remainder = remainder or [zero] * group.dimension
+            storing = zero if law.energy is None else at_rest(stress[i], group) - remainder[i]
+            remainder = [*remainder[:i], Symbol(name) - storing, *remainder[i + 1 :]]
 
-    def free(vector: Sequence[Expression]) -> Formulas:
-        kept = (Number(0.0) if held else e for e, held in zip(vector, frozen, strict=True))
-        return tuple(names.law(e, group.strain) for e in kept)
+    def free(formulas: Sequence[Expression]) -> Formulas:
+        return tuple(names.law(zero if held else e, group) for e, held in zip(formulas, frozen, strict=True))
 
-    energy = law.energy if law.energy is not None else Number(0.0)
     return LawStructure(
-        stress=free(law.stress),
-        energy=names.law(energy, group.strain),
+        stress=free(stress),
+        energy=names.law(energy, group),
         remainder=free(remainder) if remainder else (),
-        supply=names.law(derivative(energy, "t"), group.strain),
+        supply=names.law(derivative(energy, "t"), group),
     )
+
+
+def _resting(e: Expression, group: Group, frozen: Sequence[bool]) -> Expression:
+    """A formula where frozen modes do not change."""
+    for rate, held in zip(rates(group), frozen, strict=True):
+        e = fixed(e, rate, 0.0) if held else e
+    return e
 
 
 def structure_of(model: RodModel) -> RodStructure:

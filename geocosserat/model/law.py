@@ -15,6 +15,7 @@ from geocosserat.model.expressions import (
     ExpressionError,
     Number,
     derivative,
+    fixed,
     parse,
     symbols,
 )
@@ -40,6 +41,13 @@ def rates(group: Group) -> tuple[str, ...]:
     return tuple(f"{name}_dot" for name in group.strain)
 
 
+def at_rest(e: Expression, group: Group) -> Expression:
+    """A component of a stress where no strain changes."""
+    for name in rates(group):
+        e = fixed(e, name, 0.0)
+    return e
+
+
 def pose_names(group: Group) -> tuple[str, ...]:
     """Names of a configuration: x, y, theta in the plane; in space x, y, z and e1x, e1y, ... e3z, the frame's axes."""
     if group.rotations == 1:
@@ -53,11 +61,11 @@ class Law:
 
     ``reference``: the turn that energies are counted from, d numbers. ``domain``: intervals of strain components in
     which the law is meant; what is not named is not bounded. ``stress``: d expressions of the turn, its rates, u and
-    t (force, force x length), or None. ``energy``: the density (force) of which the stress is the gradient but for the
-    ``remainder``, d expressions, empty if there is none; None if no energy is known. ``wrench``: d expressions of the
-    configuration, u and t, in the moving frame (force / length, force), or None. ``friction``: d x d expressions of
-    u, or None. ``parameters``: the values of those that have one; ``open``: those left open, and whether they are
-    positive. ``source``: TOML text that reads back as this law.
+    t (force, force x length), or None. ``energy``: the density (force) of which the stress, at rates of zero, is the
+    gradient but for the ``remainder``, d expressions, empty if there is none; None if no energy is known. ``wrench``: d
+    expressions of the configuration, u and t, in the moving frame (force / length, force), or None. ``friction``: d x d
+    expressions of u, or None. ``parameters``: the values of those that have one; ``open``: those left open, and whether
+    they are positive. ``source``: TOML text that reads back as this law.
     """
 
     name: str

@@ -8,7 +8,7 @@ from geocosserat.algebra.groups import Group
 from geocosserat.model.checks import check_all_finite, check_positive
 from geocosserat.model.expressions import Number, constant, derivative, evaluate, steps, symbols
 from geocosserat.model.fields import ALONG_ROD, ALONG_ROD_IN_TIME, Names, Table, matrix, vector, word
-from geocosserat.model.law import Law
+from geocosserat.model.law import Law, at_rest
 from geocosserat.model.place import Found, shown
 from geocosserat.model.records import Matrix, Vector
 
@@ -27,10 +27,10 @@ def read_stiffness(rod: Table, group: Group, names: Names, law: Law | None, refe
 
 
 def _about(stress: Vector, group: Group, names: Names, reference: Vector) -> Matrix:
-    """The tangent of a law at the reference in the middle of the rod, in numbers; zero where it has no value."""
+    """The tangent of a law at rest at the reference, mid-rod, in numbers; zero where it has no value."""
     middle: dict[str, float] = {**names.parameters, "u": names.length / 2, "t": 0.0}
     at = middle | {name: float(evaluate(e, middle)) for name, e in zip(group.strain, reference, strict=True)}
-    values = [[float(evaluate(derivative(e, name), at)) for name in group.strain] for e in stress]
+    values = [[float(evaluate(derivative(at_rest(e, group), name), at)) for name in group.strain] for e in stress]
     return tuple(tuple(Number(x if math.isfinite(x) else 0.0) for x in row) for row in values)
 
 

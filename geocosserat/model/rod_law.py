@@ -12,9 +12,10 @@ from geocosserat.algebra.groups import Group
 from geocosserat.model.checks import points_along
 from geocosserat.model.effects.law_wrench import LawWrench, law_wrench
 from geocosserat.model.errors import InputError
-from geocosserat.model.expressions import ExpressionError, evaluate, symbols
+from geocosserat.model.expressions import ExpressionError, evaluate, symbols, to_text
 from geocosserat.model.fields import Names, Table
-from geocosserat.model.law import Law, law_of
+from geocosserat.model.law import Law, law_of, rates
+from geocosserat.model.linear import is_linear
 from geocosserat.model.place import Found, Place, shown
 from geocosserat.model.reading import Read, read
 from geocosserat.model.records import RodModel, Start
@@ -40,7 +41,8 @@ def take_in_law(given: Read) -> bool:
 def read_law(rod: Table, group: Group, parameters: Mapping[str, float]) -> Law | None:
     """The law of the rod with the scene's values of its parameters; None if it has none.
 
-    Raises InputError for a law of another motion, for parameters left open, and for a stress that sees rates.
+    Raises InputError for a law of another motion, for parameters left open, and for a stress that is not linear in the
+    rates of strain: what gives it in a rod that moves is a linear system.
     """
     if "law" not in rod:
         return None
@@ -54,10 +56,13 @@ def read_law(rod: Table, group: Group, parameters: Mapping[str, float]) -> Law |
         raise place.at("parameters").at(name).wrong(
             "a number", Found("a parameter left open"), f"write {name} = ... under [parameters] of the scene"
         )
-    if law.viscous:
-        raise place.at("stress").unavailable(
-            "a stress of the turn alone", "rates of it", "leave the terms with rates out"
-        )
+    for name, e in zip(group.stress, law.stress or (), strict=law.stress is not None):
+        if not is_linear(e, rates(group)):
+            raise place.at("stress").at(name).wrong(
+                "a stress that is linear in the rates of strain",
+                to_text(e),
+                "write it as a sum in which each rate stands once, times what does not depend on rates",
+            )
     return law
 
 
@@ -75,7 +80,8 @@ def read_law_wrench(place: Place, law: Law | None) -> tuple[LawWrench, ...]:
 
 
 def check_law_starts(place: Place, model: RodModel, start: Start, names: Names) -> None:
-    """Raise InputError unless the stress is finite all along the rod at the start."""
+    """Raise InputError unless the stress is finite all along the rod at the start, as far as it is known by then: what
+    rates of strain add to it follows from the balance."""
     if model.law is None or model.law.stress is None:
         return
     u = points_along(place, start.strain, names)
@@ -84,7 +90,8 @@ def check_law_starts(place: Place, model: RodModel, start: Start, names: Names) 
         for name, e in zip(model.group.strain, start.strain, strict=True)
     }
     for name, e in zip(model.group.stress, model.law.stress, strict=True):
-        values = {k: x for k, x in {**names.parameters, "u": u, "t": 0.0, **turn}.items() if k in symbols(e)}
+        still = dict.fromkeys(rates(model.group), 0.0)
+        values = {k: x for k, x in {**names.parameters, "u": u, "t": 0.0, **turn, **still}.items() if k in symbols(e)}
         stress = np.broadcast_to(evaluate(e, values), u.shape)
         for at in u[~np.isfinite(stress)]:
             found = Found(f"another at u = {float(at):.6g}")

@@ -19,8 +19,8 @@ import numpy as np
 
 from geocosserat.algebra.exponential import vector_from_rotation
 from geocosserat.algebra.groups import Group
-from geocosserat.model.expressions import Expression, Number, Symbol, derivative, evaluate, fixed, substitute, to_text
-from geocosserat.model.law import Law, rates
+from geocosserat.model.expressions import Expression, Number, Symbol, derivative, evaluate, substitute, to_text
+from geocosserat.model.law import Law, at_rest
 from geocosserat.model.seen import cross, dot
 from geocosserat.model.toml_text import to_toml
 from geocosserat.passivity.balls import PARAMETER
@@ -65,7 +65,8 @@ def grip(group: Group, turn: Sequence[Expression], rate: Sequence[Expression]) -
 def strain_machine(law: Law, loop: Loop) -> str:
     """A scene, as TOML text, in which grips take a rod of this law once round a loop of strain, in unit time.
 
-    Its rod is one unit long: what the law gives is ``loop.work``. Terms with rates of the turn are left out.
+    Its rod is one unit long: what the law gives is ``loop.work``. Terms with rates of the turn are left
+    out: what viscosity takes vanishes as the loop is gone round more slowly.
     """
     path = loop.path(law.group.strain)
     time = {PARAMETER: Symbol("t")}
@@ -75,7 +76,7 @@ def strain_machine(law: Law, loop: Loop) -> str:
     values = {name: float(x) for name, x in loop.parameters.items()}
     tables = _law_tables(law, values)
     at = {name: Number(float(x)) for name, x in loop.parameters.items() if name in ("u", "t")}
-    stress = [substitute(_at_rest(e, law.group), at) for e in law.stress or ()]
+    stress = [substitute(at_rest(e, law.group), at) for e in law.stress or ()]
     tables["stress"] = {name: to_text(e) for name, e in zip(law.group.stress, stress, strict=True)}
     end = {"kind": "driven", "twist": [to_text(e) for e in twist]}
     return _scene(
@@ -84,13 +85,6 @@ def strain_machine(law: Law, loop: Loop) -> str:
         ends={"left": {"kind": "clamped"}, "right": end},
         drag=_drag(law.group, twist, loop.work),
     )  # fmt: skip
-
-
-def _at_rest(e: Expression, group: Group) -> Expression:
-    """At rates of zero: what viscosity takes vanishes as the loop is gone round more slowly."""
-    for name in rates(group):
-        e = fixed(e, name, 0.0)
-    return e
 
 
 def configuration_machine(law: Law, loop: ConfigurationLoop) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 
 from geocosserat.model.effects.law_wrench import LawWrench
 from geocosserat.model.expressions import Expression, Number, derivative, evaluate
-from geocosserat.model.law import Law
+from geocosserat.model.law import Law, at_rest
 from geocosserat.model.records import RodModel
 from geocosserat.passivity.energy import Split
 from geocosserat.passivity.readable import to_expression
@@ -33,7 +33,8 @@ def _potential(effect: LawWrench) -> LawWrench:
 
 
 def storing(law: Law) -> Law:
-    """The law with its energy and the remainder of its stress, as far as they were found; as it is if it has an energy.
+    """The law with its energy and the remainder of its stress at rest, as far as they were found; as it is if it has an
+    energy.
 
     They are looked for with all parameters open, so that a kernel serves every value of them, and else for their
     values. Where nothing is found, all that the stress does counts as lost.
@@ -51,7 +52,7 @@ def storing(law: Law) -> Law:
 
 
 def _adds_up(law: Law) -> bool:
-    """Whether gradient and remainder add up to the stress, in double precision at points around the reference."""
+    """Whether gradient and remainder add up to the stress at rest, in double precision, around the reference."""
     assert law.stress is not None
     assert law.energy is not None
     chance = np.random.default_rng(1)
@@ -60,7 +61,7 @@ def _adds_up(law: Law) -> bool:
     rest = law.remainder or (Number(0.0),) * len(law.stress)
     for name, stress, remainder in zip(law.group.strain, law.stress, rest, strict=True):
         parts = [np.broadcast_to(evaluate(e, values), at.shape[1:]) for e in (derivative(law.energy, name), remainder)]
-        expected = np.broadcast_to(evaluate(stress, values), at.shape[1:])
+        expected = np.broadcast_to(evaluate(at_rest(stress, law.group), values), at.shape[1:])
         known = np.isfinite(expected)
         size = 1e-300 + sum(np.abs(part) for part in (*parts, expected))
         if not np.all(np.abs(sum(parts) - expected)[known] <= 1e-9 * size[known]):

@@ -20,11 +20,10 @@ from geocosserat.model.expressions import (
     Negate,
     Number,
     derivative,
-    fixed,
     substitute,
     symbols,
 )
-from geocosserat.model.law import Law, Vector, rates
+from geocosserat.model.law import Law, Vector, at_rest
 from geocosserat.passivity.balls import rational
 from geocosserat.passivity.conditions import Conditions, conditions
 from geocosserat.passivity.energy import Energy, Split, energy_of, split
@@ -137,9 +136,7 @@ def _without(law: Law, name: str) -> Law:
 
 
 def _elastic(e: Expression, law: Law) -> Expression:
-    for name in sorted(symbols(e) & set(rates(law.group))):
-        e = fixed(e, name, 0.0)
-    return substitute(e, {name: Number(float(value)) for name, value in law.parameters.items()})
+    return substitute(at_rest(e, law.group), {name: Number(float(value)) for name, value in law.parameters.items()})
 
 
 def _settled(e: Expression, box: Mapping[str, Range]) -> Expression:

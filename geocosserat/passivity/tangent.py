@@ -15,8 +15,8 @@ from scipy.stats import qmc
 
 from geocosserat.algebra.groups import Group
 from geocosserat.model.evaluation import children, walk
-from geocosserat.model.expressions import Call, Expression, Number, Symbol, derivative, fixed, substitute, symbols
-from geocosserat.model.law import Law, Matrix, Vector, rates
+from geocosserat.model.expressions import Call, Expression, Number, Symbol, derivative, substitute, symbols
+from geocosserat.model.law import Law, Matrix, Vector, at_rest
 from geocosserat.passivity.balls import ball
 from geocosserat.passivity.compiled import Compiled
 
@@ -112,8 +112,7 @@ def tangent_of(law: Law) -> Tangent | None:
     stress = with_values(law, law.stress)
     if law.viscous:
         assumptions.append("tangent at rates zero: the viscous part of the stress is left out")
-    for name in rates(group) if law.viscous else ():
-        stress = tuple(fixed(e, name, 0.0) for e in stress)
+    stress = tuple(at_rest(e, group) for e in stress)
     matrix = tuple(tuple(derivative(e, x) for x in group.strain) for e in stress)
     if law.energy is not None:
         # second derivatives are the same in either order, however they are written

@@ -64,24 +64,29 @@ def test_a_kernel_says_what_it_is(name: str) -> None:
         for place in ("uniform", "point", "node"):
             assert f"{place:<10} {', '.join(s.signature[place]) or 'none'}" in head
         n = s.signature["operations"]
-        assert f"stress {n['stress']}, strain rate {n['strain_rate']}; at a node: surroundings" in head
+        gap = f", gap of viscous modes {n['gap']}" if s.signature["viscous"] else ""
+        assert f"stress {n['stress']}, strain rate {n['strain_rate']}{gap}; at a node: surroundings" in head
         assert f"surroundings {n['surroundings']}, velocity {n['velocity']}" in head
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_the_heading_says_what_the_state_holds(name: str) -> None:
-    """Component by component, of frozen modes the stress, then the pose of the end that poses are marched from, if it
-    moves by itself; and which pose the kernel is given, of a driven one all those to come."""
+    """Component by component, of frozen modes the stress, and that of viscous ones, then the pose of the end that poses
+    are marched from, if it moves by itself; and which pose the kernel is given, of a driven one all those to come."""
     s, structure = source(name), structure_of(scene(name).model)
     names = structure.state_names
+    group = structure.group
     for held, strain, stress, found in zip(
-        structure.frozen, structure.group.strain, structure.group.stress, names, strict=True
+        structure.frozen, group.strain, group.stress, names[: group.dimension], strict=True
     ):
         assert found == (stress if held else strain)
+    viscous = [s for s, here in zip(group.stress, structure.viscous, strict=True) if here]
+    assert list(names[group.dimension :]) == viscous
     for text in (s.c, s.numpy):
         head = text[:2500]
         assert f"state at a point ({', '.join(names)})" in head
         what = "turn, of frozen modes the stress" if any(structure.frozen) else "turn"
+        what += ", stress of viscous modes" if viscous else ""
         base = f", pose of the {structure.base} end relative to its start [{structure.carried}]"
         pose = base if structure.carried else ""
         assert f"state y    {what} [{len(names)}][points]{pose}, energy dissipated, work done" in head
@@ -92,6 +97,7 @@ def test_the_heading_says_what_the_state_holds(name: str) -> None:
     assert f"/* pose of the {structure.base} end{start}: {frame}, then position{rest}" in s.c
     assert s.signature["state"] == list(names)
     assert s.signature["frozen"] == list(scene(name).model.frozen)
+    assert s.signature["viscous"] == [e for e, here in zip(group.strain, structure.viscous, strict=True) if here]
     assert (s.signature["base"], s.signature["carried"]) == (structure.base, structure.carried)
 
 
@@ -141,7 +147,7 @@ def test_equal_structures_have_equal_texts(name: str) -> None:
 @pytest.mark.parametrize("name", NAMES)
 def test_what_a_scene_does_not_name_leaves_no_trace(name: str) -> None:
     """No function, no field and no argument for orientations, places, carried and prescribed poses, frozen modes,
-    references that change, joined ends, loads or steps in time."""
+    viscous ones, references that change, joined ends, loads or steps in time."""
     s, structure = source(name), structure_of(scene(name).model)
     for text in (s.c, s.numpy):
         assert ("orient(" in text) == (structure.sight != "nothing")
@@ -158,7 +164,9 @@ def test_what_a_scene_does_not_name_leaves_no_trace(name: str) -> None:
         stepping = any("heaviside" in to_text(c.expression) for c in structure.timed if c.expression is not None)
         assert ("heaviside(" in s.c) == stepping
     assert s.c.count("heaviside(") != 1  # defined, and called
-    assert ("IS_FROZEN(c) FROZEN" in s.c) == ("problem_residual(" in s.c) == any(structure.frozen)
+    constrained = any(structure.frozen) or any(structure.viscous)
+    assert ("IS_FROZEN(c) FROZEN" in s.c) == ("problem_residual(" in s.c) == constrained
+    assert all(("viscous" in text) == ("gap" in text) == any(structure.viscous) for text in (s.c, s.numpy))
     assert ("close_ring(" in s.c) == structure.joined
     assert ("hold(" in s.c) == (not structure.joined and {structure.left.kind, structure.right.kind} != {"free"})
     if structure.sight != "pose":

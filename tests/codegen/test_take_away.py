@@ -19,12 +19,12 @@ from geocosserat.conductor.derive import generate
 from geocosserat.conductor.kernels import kernel_text
 from geocosserat.discretisation.semidiscrete import discretise
 from geocosserat.kernel.load import load
-from tests.discretisation.rods import CAST, FROZEN, JOINED, changed
+from tests.discretisation.rods import CAST, FROZEN, JOINED, VISCOUS, changed
 
 STEPS = "12"
 SCENES = (
     "planar everything", "spatial everything", "planar held", "spatial hung", "spatial reeled", "planar cranked",
-    "planar ring", "spatial ring",
+    "planar ring", "spatial ring", "planar creeping", "spatial damped",
 )  # fmt: skip
 
 
@@ -92,7 +92,7 @@ def signature(folder: Path) -> dict[str, Any]:
     return found
 
 
-@pytest.mark.parametrize(("name", "degree"), list(zip(SCENES, (1, 1, 4, 4, 1, 4, 1, 4), strict=True)))
+@pytest.mark.parametrize(("name", "degree"), list(zip(SCENES, (1, 1, 4, 4, 1, 4, 1, 4, 4, 1), strict=True)))
 def test_the_kernel_stays_inside_the_memory_it_asks_for(
     name: str, degree: int, folders: Any, tmp_path: Path, c_compiler: str
 ) -> None:
@@ -129,8 +129,8 @@ print(np.abs(d.rate[d.held]).max(), np.abs(d.rate[~d.held]).max(), d.change @ d.
 """
 
 
-@pytest.mark.parametrize("name", [name for name in SCENES if name in (*FROZEN, *JOINED)])
-def test_a_driver_keeps_frozen_modes_frozen(name: str, folders: Any) -> None:
+@pytest.mark.parametrize("name", [name for name in SCENES if name in (*FROZEN, *JOINED, *VISCOUS)])
+def test_a_driver_keeps_frozen_modes_frozen_and_viscous_ones_at_their_law(name: str, folders: Any) -> None:
     """At the end of the run what must vanish has vanished, to round-off of what moves; and Newton's method had come to
     an end."""
     folder = folders(name, "numpy")

@@ -10,6 +10,7 @@ With half lengths h, Gauss weights w, lumped masses m, and D, B slope and value 
     A(E) V = D V / h + [E, B V]
     -A^T (h w S) + end loads + m wrench + m drag + what holds the ends = 0,   drag = -friction (V - V of the medium)
     dE/dt = A V, of frozen modes 0 = A V - d(reference)/dt - slack S
+    0 = law(E, dE/dt) - S for the stress S of viscous modes, which the state holds after the turn
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
+from geocosserat.model.printing import to_text
 from geocosserat.model.records import RodModel, Scene
 from geocosserat.model.tree import Binary, Call, Expression, Negate, Number, Symbol
 
@@ -280,6 +282,11 @@ class Rod:
         self.given = {name: MP.mpf(x) for name, x in (given or {}).items()}
         self.slack = [self.given.get(f"slack_{name}", MP.mpf(0)) for name in model.group.stress]
         self.law: Any = model.law
+        self.still = {f"{name}_dot": MP.mpf(0) for name in model.frozen}
+        """Rates of strain that there are not."""
+        self.viscous = [i for i in range(self.d) if model.law and not self.frozen[i] and self._viscous(i)]
+        """The modes whose stress answers to rates of strain."""
+        self.c = self.d + len(self.viscous)
         self.stiffness = [self.matrix(model.stiffness, {"u": u}) for u in self.u_point]
         self.friction = self._friction(model)
         """(N, 6, 6), zero where the plane has no component."""
@@ -294,6 +301,10 @@ class Rod:
         start = [self.vector(scene.start.strain, {"u": u}) for u in self.u_point]
         self.start = self.poses(np.stack(start, axis=1), None)
         self._references: dict[Any, Array] = {}
+
+    def _viscous(self, i: int) -> bool:
+        free = (name for name, held in zip(self.model.group.strain, self.frozen, strict=True) if not held)
+        return any(f"{name}_dot" in to_text(self.law.stress[i]) for name in free)
 
     def gather(self, local: Sequence[Array]) -> Array:
         """Sum over elements of half length times a local field on their nodes (last axis)."""
@@ -355,7 +366,7 @@ class Rod:
 
     def unpack(self, t: Any, y: Array) -> tuple[Array, Array, tuple[Array, Array] | None]:
         """Turn and stress (d, Q), and how the base has moved since the start, if it may: frozen modes are at their
-        reference, their stress is given."""
+        reference; their stress is given, and that of viscous ones."""
         d, Q = self.d, self.Q
         given, rest = y[: d * Q].reshape(d, Q), self.reference(t)
         held = np.array(self.frozen)
@@ -366,10 +377,21 @@ class Rod:
                 strain = [K[i, j] * (E[j, q] - rest[j, q]) for j in range(d) if not held[j]]
                 S[i, q] = given[i, q] if held[i] else sum(strain)
         if self.law:
+            by_law = [i for i in range(d) if not held[i] and i not in self.viscous]
             for q, u in enumerate(self.u_point):
-                law = self.vector(self.law.stress, {**self.names(E[:, q]), "u": u, "t": t})
-                S[~held, q] = law[~held]
-        return E, S, self.moved(t, y[d * Q : d * Q + self.carried])
+                known = {**self.names(E[:, q]), **self.still, "u": u, "t": t}
+                S[by_law, q] = self.vector([self.law.stress[i] for i in by_law], known)
+            S[self.viscous] = y[d * Q : self.c * Q].reshape(-1, Q)
+        return E, S, self.moved(t, y[self.c * Q : self.c * Q + self.carried])
+
+    def gaps(self, t: Any, E: Array, S: Array, rates: Array) -> Array:
+        """(., Q) what the law says of the stress of viscous modes at a turn and its rates, less what it is."""
+        said = [self.law.stress[i] for i in self.viscous]
+        out = zeros(len(said), self.Q)
+        for q, u in enumerate(self.u_point if said else ()):
+            changing = {f"{name}_dot": x for name, x in self.names(rates[:, q]).items()}
+            out[:, q] = self.vector(said, {**self.names(E[:, q]), **changing, **self.still, "u": u, "t": t})
+        return out - S[self.viscous]
 
     def names(self, turn: Array) -> dict[str, Any]:
         """A turn (d,) by the names of its components."""
@@ -625,7 +647,7 @@ class Rod:
     def rate(self, t: float, y: Array) -> Array:
         """dy/dt with 40 digits, of a state of doubles or of 40-digit numbers, in the layout of the kernels."""
         y = y if y.dtype == object else numbers(y)
-        m, d, Q = self.move(t, y), self.d, self.Q
+        m, Q = self.move(t, y), self.Q
         V, moving = m.twist, self.reference_rate(MP.mpf(t))
         S = m.stress[self.kept]
         rates = self.strain_rate(m.turn, V)[self.kept]
@@ -647,8 +669,9 @@ class Rod:
             worked += self.integral(supplied)
         else:
             worked -= self.integral((moving * S).sum(axis=0))
-        pose = self.pose_rate(y[d * Q : d * Q + self.carried], V[:, self.base_node])
-        return np.concatenate([rates.ravel(), pose, np.array([lost, worked])])
+        gaps = self.gaps(MP.mpf(t), m.turn[self.kept], S, rates)
+        pose = self.pose_rate(y[self.c * Q : self.c * Q + self.carried], V[:, self.base_node])
+        return np.concatenate([rates.ravel(), gaps.ravel(), pose, np.array([lost, worked])])
 
     def pose_rate(self, pose: Array, V: Array) -> Array:
         """How the base's pose, relative to its start, follows its twist (6,)."""

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from geocosserat.discretisation.semidiscrete import SemiDiscrete, discretise
 from geocosserat.model.records import Scene
 from geocosserat.model.scene import load_scene
+from geocosserat.passivity.storing import stored
 
 Array = NDArray[np.float64]
 MOTIONS = ("planar", "spatial")
@@ -167,6 +168,45 @@ SOFT = {
 }
 """Energy densities that are not quadratic, and change in time."""
 
+DAMPED = {
+    "planar": {
+        "motion": "planar",
+        "parameters": {"c": 0.4},
+        "stress": {"F1": "3*(h1 - 1)", "F2": "2*h2", "M": "1.5*Pi + c*(1 + 0.5*sin(u))*Pi_dot/(1 + Pi**2)"},
+    },
+    "spatial": {
+        "motion": "spatial",
+        "parameters": {"c": 0.4},
+        "stress": {
+            "F1": "3*(h1 - 1)", "F2": "2*h2", "F3": "2.5*h3", "M1": "0.9*Pi1", "M2": "1.5*Pi2",
+            "M3": "1.2*Pi3 + c*(1 + 0.5*sin(u))*Pi3_dot/(1 + Pi1**2)",
+        },
+    },
+}  # fmt: skip
+"""Laws of which one bend is viscous."""
+
+CREEPING = {
+    "planar": {
+        "motion": "planar",
+        "parameters": {"a": 0.25},
+        "stress": {
+            "F1": "3*(h1 - 1) + 0.3*(1 + Pi**2)*h1_dot + a*Pi_dot", "F2": "2*h2 + h1_dot",
+            "M": "1.5*Pi - 0.2*h1 + (0.4 + 0.1*u)*Pi_dot - a*h1_dot*cos(t) + 0.7*h2_dot",
+        },
+    },
+    "spatial": {
+        "motion": "spatial",
+        "parameters": {"a": 0.25},
+        "stress": {
+            "F1": "3*(h1 - 1) + 0.3*(1 + Pi3**2)*h1_dot + a*Pi2_dot", "F2": "2*h2", "F3": "2.5*h3 + 0.7*h2_dot",
+            "M1": "0.9*Pi1 + 0.2*h1*Pi1_dot + h2_dot", "M3": "1.2*Pi3 + a*h3_dot",
+            "M2": "1.5*Pi2 - 0.2*h1 + (0.4 + 0.1*u)*Pi2_dot - a*h1_dot*cos(t)",
+        },
+    },
+}  # fmt: skip
+"""Laws with several viscous modes that answer to each other's rates, to those of a mode that is not viscous, and not to
+those of one that is frozen, though they are written; part of the stress at rest has no energy."""
+
 ACTIVE = {
     "planar": ["1 + 0.1*sin(u - t)", 0.1, "2*cos(u + 3*t)"],
     "spatial": ["1 + 0.1*sin(u - t)", 0.1, "0.2*t", "u", "2*cos(u + 3*t)", -0.5],
@@ -299,6 +339,18 @@ def cast(motion: str) -> dict[str, dict[str, Any]]:
             parameters={"k": 1.2},
             ends={"left": FREE, "right": pinned(motion, "body")},
         ),
+        "damped": _rod(
+            motion,
+            {"law": DAMPED[motion], "friction": full(motion, "u"), **curved},
+            ends={"left": FREE, "right": load(motion, 0.5, -0.4, 0.3, 0.1, 0.2, 0.3, frame="world")},
+            effects=acting(motion, "trap", "follower"),
+        ),
+        "creeping": _rod(
+            motion,
+            {"law": CREEPING[motion], "friction": full(motion), "frozen": ["h2"], **closed(motion)},
+            ends={"joined": True},
+            effects=acting(motion, "couple"),
+        ),
     }
 
 
@@ -309,16 +361,18 @@ def _bends(motion: str) -> list[str]:
 
 CAST = {f"{motion} {name}": values for motion in MOTIONS for name, values in cast(motion).items()}
 NAMES = tuple(CAST)
-LAWFUL = tuple(name for name in NAMES if name.split()[1] in ("odd", "soft"))
+VISCOUS = tuple(name for name in NAMES if name.split()[1] in ("damped", "creeping"))
+"""Rods whose stress answers to rates of strain."""
+LAWFUL = (*(name for name in NAMES if name.split()[1] in ("odd", "soft")), *VISCOUS)
 """Rods made of a law in place of a stiffness."""
-_PLACED = ("odd", "held", "stirred", "hinged", "cranked", "reeled", "swept", "wrung", "ring")
+_PLACED = ("odd", "damped", "held", "stirred", "hinged", "cranked", "reeled", "swept", "wrung", "ring")
 _SEEING = ("dead", "hung", "everything", "towed", *_PLACED)
 WORLD = (*(name for name in NAMES if name.split()[1] in _SEEING), "spatial twisted")
 """Rods whose loads see the world."""
 PLACED = tuple(name for name in NAMES if name.split()[1] in _PLACED)
 """Those that see where they are in it."""
-JOINED = tuple(name for name in NAMES if name.split()[1] in ("hoop", "ring"))
-_FROZEN = ("cranked", "shaken", "reeled", "towed", "wrung", "ring", "odd")
+JOINED = tuple(name for name in NAMES if name.split()[1] in ("hoop", "ring", "creeping"))
+_FROZEN = ("creeping", "cranked", "shaken", "reeled", "towed", "wrung", "ring", "odd")
 FROZEN = tuple(name for name in NAMES if name.split()[1] in _FROZEN)
 
 
@@ -327,12 +381,18 @@ def changed(name: str, **tables: Mapping[str, Any]) -> Scene:
     values = copy.deepcopy(CAST[name])
     for table, entries in tables.items():
         values[table] = {**values.get(table, {}), **entries}
-    return load_scene(values)
+    return _loaded(name, values)
 
 
 @cache
 def scene(name: str) -> Scene:
-    return load_scene(CAST[name])
+    return _loaded(name, CAST[name])
+
+
+def _loaded(name: str, values: Mapping[str, Any]) -> Scene:
+    """The scene; of a law that stores and loses, with what it stores."""
+    found = load_scene(values)
+    return replace(found, model=stored(found.model)) if name.endswith("creeping") else found
 
 
 @cache

@@ -11,10 +11,10 @@ from geocosserat.discretisation.pointwise import pointwise
 from geocosserat.discretisation.structuring import structure_of
 from geocosserat.model.expressions import evaluate
 from geocosserat.model.scene import load_scene
-from tests.discretisation.rods import CAST, FROZEN
+from tests.discretisation.rods import CAST, FROZEN, VISCOUS
 
 EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.toml"))
-SCENES = {**{path.stem: path for path in EXAMPLES}, **{name: CAST[name] for name in FROZEN}}
+SCENES = {**{path.stem: path for path in EXAMPLES}, **{name: CAST[name] for name in (*FROZEN, *VISCOUS)}}
 PLACE, INSTANT = sp.Rational(3, 10), sp.Rational(2, 7)
 
 
@@ -33,8 +33,8 @@ def test_the_pointwise_kernel_is_what_the_field_equations_say(name: str) -> None
     structure = structure_of(model)
     equations, points = derive(model), pointwise(structure)
     d, held = equations.group.dimension, structure.frozen
-    draw = [sp.Rational(7 * k % 23 - 11, 13) for k in range(1, 3 * d + 1)]
-    state, value, slope = draw[:d], draw[d : 2 * d], draw[2 * d :]
+    draw = [sp.Rational(7 * k % 23 - 11, 13) for k in range(1, 5 * d + 1)]
+    state, value, slope, speed, viscous = (draw[k * d : (k + 1) * d] for k in range(5))
     right_sides = [e.right for e in (*equations.compatibility, *equations.stress_law)]
     used = set().union(*(sp.sympify(e).free_symbols for e in (*right_sides, *equations.turn)))
     known: dict[sp.Basic, sp.Expr] = {
@@ -42,6 +42,7 @@ def test_the_pointwise_kernel_is_what_the_field_equations_say(name: str) -> None
         **dict(zip(equations.twist, value, strict=True)),
         **{sp.Derivative(v, U): s for v, s in zip(equations.twist, slope, strict=True)},
         **{e: x for e, x, frozen in zip(equations.turn, state, held, strict=True) if not frozen},
+        **{sp.Derivative(e, T): x for e, x, frozen in zip(equations.turn, speed, held, strict=True) if not frozen},
         U: PLACE,
         T: INSTANT,
     }
@@ -51,7 +52,8 @@ def test_the_pointwise_kernel_is_what_the_field_equations_say(name: str) -> None
     at_point = {**model.parameters, "u": float(PLACE), "t": float(INSTANT)}
     at_point |= {f"p_{parameter}": x for parameter, x in model.parameters.items()}
     inputs = {
-        **dict(zip(points.state, state, strict=True)),
+        **dict(zip(points.state, (*state, *viscous), strict=False)),
+        **{sp.Symbol(f"rate_{i + 1}"): x for i, x in enumerate(speed)},
         **{sp.Symbol(f"value_{i + 1}"): v for i, v in enumerate(value)},
         **{sp.Symbol(f"slope_{i + 1}"): s for i, s in enumerate(slope)},
         **{
@@ -70,6 +72,9 @@ def test_the_pointwise_kernel_is_what_the_field_equations_say(name: str) -> None
 
     law = {e.left.func.__name__: _numbers(e.right, known) for e in equations.stress_law}
     kernel_stress = {s: sp.N(e.subs(inputs), 30) for s, e in points.stress.items()}
+    # of viscous modes the kernel has what the law says less the state
+    gaps = zip(points.state[d:], viscous, points.gap.values(), strict=False)
+    kernel_stress |= {str(s): sp.N(e.subs(inputs), 30) + x for s, x, e in gaps}
     assert set(law) == set(kernel_stress)
     for s, derived in law.items():
         assert abs(derived - kernel_stress[s]) <= 1e-12 * (1 + abs(derived))

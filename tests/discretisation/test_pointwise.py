@@ -9,9 +9,10 @@ import pytest
 import sympy as sp
 from numpy.typing import NDArray
 
+from geocosserat.derivation.convert import to_sympy
 from geocosserat.discretisation.pointwise import Pointwise, pointwise
 from geocosserat.discretisation.structuring import structure_of
-from tests.discretisation.rods import FROZEN, MOTIONS, NAMES, scene
+from tests.discretisation.rods import FROZEN, MOTIONS, NAMES, VISCOUS, scene
 
 Symbols = NDArray[np.object_]
 
@@ -64,14 +65,15 @@ def test_the_pull_does_on_a_twist_the_work_that_the_stress_does_on_its_bracket(m
 
 @pytest.mark.parametrize("name", NAMES)
 def test_bracket_and_advection_are_the_two_derivatives_of_the_strain_rate(name: str) -> None:
-    """With respect to the value of the twist, and to the state."""
+    """With respect to the value of the twist, and to the turn; on the stress of viscous modes it does not depend."""
     p = expressions(name)
     d = p.group.dimension
     rates = [p.strain_rate[f"rate_{i + 1}"] for i in range(d)]
     by_value = [[e.diff(x) for x in symbols("value", d)] for e in rates]
-    by_state = [[e.diff(x) for x in p.state] for e in rates]
+    by_state = [[e.diff(x) for x in p.state[:d]] for e in rates]
     assert zero(matrix(p.bracket, "ad", d, d) - np.array(by_value))
     assert zero(matrix(p.advection, "advection", d, d) - np.array(by_state))
+    assert not any(e.has(x) for e in rates for x in p.state[d:])
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -79,7 +81,10 @@ def test_the_stress_is_the_derivative_of_the_energy(name: str) -> None:
     """Hyperelastic, whatever the stiffness and the reference; of frozen modes it is no matter of energy but given.
     Where no energy is known, all that the stress does is lost."""
     p = expressions(name)
-    frozen = structure_of(scene(name).model).frozen
+    structure = structure_of(scene(name).model)
+    frozen = structure.frozen
+    if any(structure.viscous):
+        return  # see below
     if p.loss:
         lost = [p.stress[s] * sp.Symbol(f"rate_{i}") for i, s in enumerate(p.group.stress, start=1) if s in p.stress]
         assert p.energy["energy"] == 0
@@ -92,6 +97,34 @@ def test_the_stress_is_the_derivative_of_the_energy(name: str) -> None:
             assert zero(np.array([energy.diff(symbol) - p.stress[stress]]))
         else:
             assert energy.diff(symbol) == 0
+
+
+@pytest.mark.parametrize("name", VISCOUS)
+def test_the_stress_of_a_viscous_mode_is_a_state_that_must_be_what_its_law_says(name: str) -> None:
+    """At the rates of strain; and whatever part of it does not store energy is lost, as is that of the other modes."""
+    p, model = expressions(name), scene(name).model
+    structure, law, d = structure_of(model), model.law, p.group.dimension
+    assert law is not None
+    assert law.stress is not None
+    rates = [sp.Symbol(f"rate_{i}") for i in range(1, d + 1)]
+    known = dict(zip((sp.Symbol(x, real=True) for x in p.group.strain), turn(p), strict=True))
+    known |= {
+        sp.Symbol(f"{x}_dot", real=True): sp.Integer(0) if held else rate
+        for x, rate, held in zip(p.group.strain, rates, structure.frozen, strict=True)
+    }
+    known |= {sp.Symbol(x, real=True): sp.Symbol(f"p_{x}") for x in law.parameters}
+    known |= {sp.Symbol("u", real=True): sp.Symbol("along"), sp.Symbol("t", real=True): sp.Symbol("t")}
+    said = [to_sympy(e).xreplace(known) for e in law.stress]
+    by_law = [sp.Symbol(s) if here else e for s, e, here in zip(p.group.stress, said, structure.viscous, strict=True)]
+    gaps = [e - sp.Symbol(s) for s, e, here in zip(p.group.stress, said, structure.viscous, strict=True) if here]
+    assert zero(np.array(list(p.gap.values())) - np.array(gaps))
+    assert all(here == (s in map(str, p.state[d:])) for s, here in zip(p.group.stress, structure.viscous, strict=True))
+    assert not {str(x) for x in p.state[d:]} & set(p.stress)
+    energy = p.energy["energy"]
+    stored = [energy.diff(x) for x in p.state[:d]]
+    lost = sum((a - b) * r for a, b, r, held in zip(by_law, stored, rates, structure.frozen, strict=True) if not held)
+    assert zero(np.array([p.loss["loss"] - lost]))
+    assert (energy != 0) == (law.energy is not None)
 
 
 @pytest.mark.parametrize("name", FROZEN)

@@ -41,12 +41,14 @@ def named(rod: SemiDiscrete, name: str) -> Array | float:
 @pytest.mark.parametrize("size", SIZES, ids=str)
 @pytest.mark.parametrize("name", NAMES)
 def test_shapes_are_those_of_the_contract(name: str, size: tuple[int, int]) -> None:
-    """Turn by component (of frozen modes the stress), then a carried pose, then two energies; coefficients in the order
-    of the structure; the base's orientation, then its place, then its course if that is prescribed and matters."""
+    """Turn by component (of frozen modes the stress), then the stress of viscous modes, then a carried pose, then two
+    energies; coefficients in the order of the structure; the base's orientation, then its place, then its course if
+    that is prescribed and matters."""
     r = rod(name, *size)
     d, Q = r.structure.group.dimension, r.mesh.elements * r.mesh.degree
-    assert r.state.shape == (d * Q + r.structure.carried + 2,)
-    assert r.unknowns == d * Q + r.structure.carried
+    rows = d + sum(r.structure.viscous)
+    assert r.state.shape == (rows * Q + r.structure.carried + 2,)
+    assert r.unknowns == rows * Q + r.structure.carried
     assert r.uniform.shape == (len(r.structure.at("uniform")),)
     assert r.point.shape == (len(r.structure.at("point")), Q)
     assert r.node.shape == (len(r.structure.at("node")), Q + 1)
@@ -134,7 +136,7 @@ def test_the_turn_of_a_frozen_mode_is_its_reference_at_its_time(name: str) -> No
             wanted = rest[i] if held else states[k, i * Q : (i + 1) * Q]
             np.testing.assert_allclose(turn[k, i], wanted, rtol=1e-15, atol=1e-15)
             np.testing.assert_array_equal(r.algebraic[i * Q : (i + 1) * Q], float(held))
-    assert not r.algebraic[len(r.structure.frozen) * Q :].any()
+    assert r.algebraic.sum() == Q * (sum(r.structure.frozen) + sum(r.structure.viscous))
     together = r.poses(states, times)
     for k, t in enumerate(times):
         np.testing.assert_allclose(together.position[k], r.poses(states[k], t).position, rtol=0, atol=1e-14)

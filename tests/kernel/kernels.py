@@ -115,9 +115,9 @@ def reference_derivative(name: str, elements: int, degree: int, seed: int) -> tu
 
 
 def turns(case: Case) -> int:
-    """How many state entries are turns at points, or stresses of frozen modes."""
+    """How many state entries are turns or stresses at points."""
     r = rod(*case[:3])
-    return r.structure.group.dimension * len(r.mesh.u_point)
+    return len(r.structure.state_names) * len(r.mesh.u_point)
 
 
 def whole(blocks: tuple[Array, Array, Array], joined: bool) -> Array:

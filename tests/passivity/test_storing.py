@@ -95,6 +95,17 @@ def test_a_linear_law_stores_its_symmetric_part(name: str) -> None:
     np.testing.assert_allclose(work, 0.0, atol=1e-13)
 
 
+@pytest.mark.parametrize("odd", ["", " + 0.3*Pi"])
+def test_a_viscous_law_stores_what_it_does_at_rest(odd: str) -> None:
+    """Energy and remainder are those of the law without its rates; these cost no more."""
+    still = {"F1": "10*(h1 - 1)", "F2": f"10*h2{odd}", "M": "sinh(Pi)"}
+    moving = {**still, "F1": still["F1"] + " + 0.5*(1 + Pi**2)*h1_dot - h2_dot", "M": still["M"] + " + Pi_dot/h1"}
+    found, wanted = kept(planar(moving)), kept(planar(still))
+    assert found.energy is not None
+    assert (found.energy, found.remainder) == (wanted.energy, wanted.remainder)
+    assert bool(found.remainder) == bool(odd)
+
+
 def test_an_energy_is_finite_at_the_reference() -> None:
     """Work along rays may be written with a quotient that has no value where the strain is that at rest."""
     law = kept(SWIRL)

@@ -61,6 +61,12 @@ def _space(left: dict[str, Any], right: dict[str, Any], frozen: list[str]) -> Sc
     )
 
 
+def _viscous(scene: Scene, stress: dict[str, str]) -> Scene:
+    """The same with a law in place of the stiffness."""
+    rod = {key: value for key, value in scene["rod"].items() if key != "stiffness"}
+    return {**scene, "rod": {**rod, "law": {"motion": rod["motion"], "stress": stress}}}
+
+
 def _ring() -> Scene:
     return changed(
         straight(*PLANE),
@@ -96,6 +102,21 @@ SCENES = {
         {"kind": "free", "force": [0.2, "t", -0.3], "torque": [0.0, 0.1, 0.2], "frame": "world"}, ["h1", "h2", "h3"],
     ),
     "ring": _ring(),
+    "plane, viscous, free and loaded": _viscous(
+        _plane({"kind": "free"}, {"kind": "free", "force": [0.2, "t"], "frame": "world"}, []),
+        {
+            "F1": "60*(h1 - 1) + 2*h1_dot + 0.3*Pi_dot", "F2": "40*h2",
+            "M": "Pi - 2*u + 0.04*(1 + u)*Pi_dot - 0.2*h1_dot",
+        },
+    ),
+    "space, viscous, driven and loaded, frozen": _viscous(
+        _space(
+            {"kind": "driven", "twist": SCREW},
+            {"kind": "free", "force": [0.2, "t", -0.3], "torque": [0.0, 0.1, 0.2], "frame": "world"},
+            ["h1", "h2", "h3"],
+        ),
+        {"M1": "0.8*(Pi1 - 1) + 0.03*Pi1_dot", "M2": "1.2*(Pi2 - u) + 0.05*(1 + Pi3**2)*Pi2_dot", "M3": "Pi3 - 2"},
+    ),
 }  # fmt: skip
 
 
