@@ -5,7 +5,8 @@ import platform
 from importlib.metadata import version
 from pathlib import Path
 
-from benchmarks import bindings, convergence, homing, kernel_cost, linear_solvers, pruning, startup
+from benchmarks import bindings, convergence, growth, homing, honesty, kernel_cost, linear_solvers, pruning, startup
+from benchmarks.peers import __main__ as peers
 from geocosserat.kernel.compile import FLAGS, compiler
 
 LIBRARIES = ("numpy", "scipy", "sympy", "scikit-sundae", "cffi", "matplotlib")
@@ -35,6 +36,9 @@ def _sections() -> list[tuple[str, str, str]]:
         ("Linear solvers", "linear_solvers", linear_solvers.table()),
         ("Whole runs from the shell, in seconds (minimum, median)", "startup", startup.table()),
         ("What each mode and each effect costs", "pruning", pruning.report()),
+        ("Time to an error, beside other programs", "peers", peers.tables()),
+        ("Growth with the number of elements", "growth", growth.tables()),
+        ("The error asked for and the error got", "honesty", honesty.table()),
         ("How far a held end strays from its place, relative to the length", "homing", homing.table()),
         ("Error of the tip, relative to the length", "convergence", convergence.tables()),
     ]
