@@ -11,7 +11,7 @@ from geocosserat.discretisation.mesh import Array, Mesh
 from geocosserat.discretisation.sampling import frictionless, left_of_friction
 from geocosserat.discretisation.semidiscrete import discretise
 from geocosserat.planning.gap import position_gap
-from geocosserat.planning.plan import Choice, Errors, Level, plan
+from geocosserat.planning.plan import Choice, Errors, Level, Verdict, plan
 from geocosserat.planning.resolution import sees_all
 from geocosserat.planning.settings import (
     DEFAULT_ACCURACY,
@@ -73,6 +73,7 @@ class _Search:
         self.scene = simulate.scene
         self.first = self._first()
         self.outcomes: list[Outcome] = []
+        self.settings: list[Setting] = []
         self.runs: list[dict[str, Any]] = []
 
     def found(self) -> Found:
@@ -80,21 +81,26 @@ class _Search:
         modelled = left_of_friction(self.scene.run) if frictionless(self.scene.model) else 0.0
         points = tuple(elements * degree for elements, degree in SIZES)
         choice = Choice(points, lambda size: most_decades(self._method(size), self.accuracy), self._method)
-        steps = plan(self.accuracy - modelled, choice, Errors(self._gap, self._strayed), self.first)
+        wanted = max(self.accuracy - modelled, 0.5 * self.accuracy)
+        steps = plan(wanted, choice, Errors(self._gap, self._strayed), self.first)
         request = next(steps)
-        kept: Attempt | None = None
+        whole: dict[int, Attempt] = {}
         while True:
-            attempt = self._run(request.level, request.whole)
+            number, attempt = len(self.outcomes), self._run(request.level, request.whole)
             if request.whole and attempt is not None:
-                kept = attempt
+                whole = {**dict(list(whole.items())[-1:]), number: attempt}  # the last two: more are never kept
             try:
                 request = steps.send(bool(self.outcomes[-1].positions.size))
             except StopIteration as end:
-                verdict = end.value
+                verdict: Verdict = end.value
                 break
-        assert kept is not None
+        kept = whole.get(verdict.kept)
+        if kept is None:  # its states were given up before an interruption
+            kept = self.simulate(self.settings[verdict.kept], self.scene.run.frames)
         estimate = None if verdict.estimate is None else verdict.estimate + modelled
-        return Found(kept, estimate, verdict.reached, _reason(kept, estimate, verdict.reached), tuple(self.runs))
+        reached = estimate is not None and estimate <= self.accuracy
+        last = next(reversed(whole.values()), kept)
+        return Found(kept, estimate, reached, _reason(kept, last, estimate, reached), tuple(self.runs))
 
     def _run(self, level: Level, whole: bool) -> Attempt | None:
         """One more run of the plan; None where no more is needed than what is known from before an interruption."""
@@ -109,6 +115,7 @@ class _Search:
             self.keeper.end(known)
         mesh = attempt.rod.mesh if attempt else discretise(self.scene, setting.elements, setting.degree).mesh
         self.outcomes.append(Outcome(mesh, known[1:], float(known[0, 0])))
+        self.settings.append(setting)
         taken = attempt.seconds if attempt else 0.0
         self.runs.append({**asdict(setting), "whole": whole, "seconds": taken, "predicted": self._predicted(setting)})
         return attempt
@@ -162,9 +169,12 @@ def _left(attempt: Attempt) -> Array:
     return np.concatenate([np.full((1, space), drift(rod, trajectory)), positions])
 
 
-def _reason(attempt: Attempt, estimate: float | None, reached: bool) -> str:
-    if reached or not attempt.trajectory.reached:
-        return attempt.trajectory.reason
-    if estimate is not None and attempt.setting.rtol <= LEAST[attempt.setting.method]:
+def _reason(kept: Attempt, last: Attempt, estimate: float | None, reached: bool) -> str:
+    """Why the accuracy was not reached; last: the last run that might have had it."""
+    if reached or not kept.trajectory.reached:
+        return kept.trajectory.reason
+    if not last.trajectory.reached:
+        return f"a finer run, for the accuracy asked for, did not come to its end: {last.trajectory.reason}"
+    if estimate is not None and kept.setting.rtol <= LEAST[kept.setting.method]:
         return f"the accuracy asked for is below round-off: at the least tolerance, about {estimate:.1g} is left"
     return "the accuracy asked for was not reached by refinement"

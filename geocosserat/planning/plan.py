@@ -95,8 +95,8 @@ def plan(accuracy: float, choice: Choice, errors: Errors, first: int = 0) -> Gen
         if new == old:
             break
         before, kept, asked = kept, asked, asked + 1
-        if not (yield Request(new, whole=True)):
-            return Verdict(kept, estimate, False)
+        if not (yield Request(new, whole=True)):  # then the one before, if it was whole
+            return Verdict(kept if estimate is None else before, estimate, False)
         if comparable:
             gap, decades, growth = errors.gap(before, kept), new.decades - old.decades, choice.growth(old, new)
             if growth == 1.0:

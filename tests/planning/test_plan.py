@@ -160,6 +160,15 @@ def test_a_run_that_stops_ends_the_plan() -> None:
     assert Problem(seed=6, stops=(0, 1)).solve(1e-6) == Verdict(1, None, False)
 
 
+def test_a_finer_run_that_stops_leaves_the_one_before() -> None:
+    """Which came to its end, with its own error."""
+    problem = Problem(seed=8, time=1e-2, stops=(3,))
+    verdict = problem.solve(1e-9)
+    assert (verdict.kept, verdict.reached) == (1, False)
+    assert verdict.estimate is not None
+    assert problem.truth(verdict) < verdict.estimate < 1e-1
+
+
 def test_an_error_that_stays_is_reported() -> None:
     """Where neither finer meshes nor finer tolerances exist; the estimate says how far it went."""
     problem = Problem(seed=8, time=1e-2)
