@@ -1,5 +1,8 @@
 """An error that is asked for is an error that is found, or the run says that it was not."""
 
+import re
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -34,6 +37,16 @@ def test_a_feature_too_fine_for_all_is_not_reported_as_solved() -> None:
     run = geocosserat.run({"rod": soft, "ends": ends, "run": {"until": 0.2, "frames": 2}})
     assert not run.reached
     assert "not reached by refinement" in run.reason
+
+
+def test_an_accuracy_below_round_off_is_answered_with_the_floor(examples: Path) -> None:
+    """How far it went, and that no tolerance goes further."""
+    run = geocosserat.run(examples / "cantilever.toml", accuracy=3e-15, settings=["run.frames=2"])
+    assert not run.reached
+    found = re.search(r"below round-off: at the least tolerance, about (\S+) is left", run.reason)
+    assert found is not None
+    assert 1e-14 < float(found[1]) < 1e-9
+    assert float(found[1]) == pytest.approx(run.error["estimated"], rel=0.5)
 
 
 def test_uniform_rods_are_seen_by_the_coarsest_mesh() -> None:

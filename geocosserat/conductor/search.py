@@ -17,6 +17,7 @@ from geocosserat.planning.settings import (
     DEFAULT_ACCURACY,
     LARGEST_DENSE,
     LEAST,
+    ROUND_OFF,
     SIZES,
     Setting,
     most_decades,
@@ -97,7 +98,7 @@ class _Search:
         kept = whole.get(verdict.kept)
         if kept is None:  # its states were given up before an interruption
             kept = self.simulate(self.settings[verdict.kept], self.scene.run.frames)
-        estimate = None if verdict.estimate is None else verdict.estimate + modelled
+        estimate = None if verdict.estimate is None else max(verdict.estimate + modelled, ROUND_OFF)
         reached = estimate is not None and estimate <= self.accuracy
         last = next(reversed(whole.values()), kept)
         return Found(kept, estimate, reached, _reason(kept, last, estimate, reached), tuple(self.runs))

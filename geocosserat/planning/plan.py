@@ -101,8 +101,10 @@ def plan(accuracy: float, choice: Choice, errors: Errors, first: int = 0) -> Gen
             gap, decades, growth = errors.gap(before, kept), new.decades - old.decades, choice.growth(old, new)
             if growth == 1.0:
                 in_time = _finer_in_time(gap, decades)
+                in_space = in_space if in_space.known else Guess(gap, gap)  # no finer mesh exists
             elif decades == 0.0:
                 in_space = _finer_in_space(gap, growth)
+                in_time = in_time if in_time.known else Guess(gap, gap)  # no finer tolerance exists
             else:
                 told, of_time = in_time.known, _part(in_time, in_space) * gap
                 in_time, in_space = _finer_in_time(of_time, decades), _finer_in_space(gap - of_time, growth)

@@ -17,6 +17,9 @@ LEAST = {"radau": 1e-9, "cvode": 1e-13, "bdf": 1e-13, "lsoda": 1e-13}
 """Tolerance of the first run in units of the accuracy, and the least one, below which is round-off: at the same
 tolerance Radau is some ten thousand times as accurate as the others (measured on the examples)."""
 
+ROUND_OFF = 1e-13
+"""What no error is less than, relative to the length."""
+
 STEPS = {"radau": 0.1, "cvode": 0.2, "bdf": 0.2, "lsoda": 0.15}
 GROWTH = {"radau": 1.5, "cvode": 1.0, "bdf": 1.0, "lsoda": 1.5}
 """Powers by which the steps grow with one over the tolerance, and the seconds of one with the number of points."""
