@@ -127,7 +127,7 @@ def _ledger(terms: Mapping[str, float | None]) -> str:
 
 def _time(fields: Mapping[str, Any]) -> str:
     until = f"until {_digits(fields['until'], 6)}, {_count(fields['frames'], 'frame')}"
-    return until if fields["reached"] else f"{until}; stopped early: {fields['reason']}"
+    return until if fields["reached"] else f"{until}; not reached: {fields['reason']}"
 
 
 def _cost(fields: Mapping[str, Any]) -> str:

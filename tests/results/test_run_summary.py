@@ -126,5 +126,5 @@ def test_what_is_unknown_or_unfinished_is_said() -> None:
     """An error that nobody estimated, a run that stopped early, a title in brackets."""
     text = _printed(rolling(estimated=None, reached=False, reason="step too small", title="[red]a[/red] :smile:"))
     assert "estimated unknown" in text
-    assert "stopped early: step too small" in text
+    assert "not reached: step too small" in text
     assert "[red]a[/red] :smile:" in text
