@@ -12,6 +12,7 @@ import time
 import warnings
 from collections.abc import Callable
 from functools import partial
+from multiprocessing import resource_tracker
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +26,12 @@ pytestmark = [
     pytest.mark.skipif(not hasattr(os, "fork"), reason="processes cannot be forked here"),
     pytest.mark.usefixtures("patience"),
 ]
+
+
+@pytest.fixture(autouse=True)
+def no_tracker() -> None:
+    """A pool of another test leaves the resource tracker of multiprocessing behind, a child like any other."""
+    resource_tracker._resource_tracker._stop()  # type: ignore[attr-defined]
 
 
 def _forever() -> None:
