@@ -39,6 +39,41 @@ def test_a_feature_too_fine_for_all_is_not_reported_as_solved() -> None:
     assert "not reached by refinement" in run.reason
 
 
+STRESS = {"F1": "1e3*(h1-1)", "F2": "1e3*h2", "M": "Pi"}
+LAW = {"motion": "planar", "stress": STRESS, "friction": {"matrix": [1, 2, 0.01]}}
+
+
+def test_what_a_law_varies_is_noticed_as_what_a_stiffness_does() -> None:
+    """A narrow soft place, and a narrow viscous one."""
+    for moment in ("(1-0.99*exp(-((u-0.5123)/0.005)**2))*Pi", "Pi+5*exp(-((u-0.5123)/0.005)**2)*Pi_dot"):
+        law = {**LAW, "name": "narrow", "stress": {**STRESS, "M": moment}}
+        scene = load_scene({"rod": {"motion": "planar", "length": 1.0, "law": law}, "run": {"until": 0.1}})
+        assert not any(sees_all(scene, *size, 1e-6) for size in SIZES[:3])
+
+
+def test_a_pulse_of_a_law_is_not_stepped_over() -> None:
+    """A wrench that pushes for a moment moves the rod as a weight does that pushes as long."""
+    pulse = "50*(heaviside(t-0.1)-heaviside(t-0.1005))"
+    law = {**LAW, "name": "pulse", "wrench": {"f1": f"{pulse}*sin(theta)", "f2": f"{pulse}*cos(theta)"}}
+    run = {"until": 0.101, "frames": 2}
+    pushed = geocosserat.run({"rod": {"motion": "planar", "length": 1.0, "law": law}, "run": run})
+    weight = {"kind": "weight", "force": [0, pulse]}
+    rod = {"motion": "planar", "length": 1.0, "stiffness": [1e3, 1e3, 1], "friction": [1, 2, 0.01]}
+    heavy = geocosserat.run({"rod": rod, "effects": [weight], "run": run})
+    assert heavy.tip["position"][1] > 5e-3
+    np.testing.assert_allclose(pushed.tip["position"], heavy.tip["position"], rtol=0, atol=2e-6)
+
+
+def test_an_accuracy_that_a_limit_of_friction_cannot_have_is_said_at_once(examples: Path) -> None:
+    """What is left of friction is an error of the model: nothing is computed more finely than that."""
+    run = geocosserat.run(examples / "euler_bernoulli.toml", accuracy=1e-12, settings=["run.frames=2"])
+    assert not run.reached
+    assert "rotations without friction are a limit" in run.reason
+    assert len(run.plan) <= 5
+    assert min(step["rtol"] for step in run.plan) > 1e-9
+    assert geocosserat.run(examples / "euler_bernoulli.toml", accuracy=1.2e-10, settings=["run.frames=2"]).reached
+
+
 def test_an_accuracy_below_round_off_is_answered_with_the_floor(examples: Path) -> None:
     """How far it went, and that no tolerance goes further."""
     run = geocosserat.run(examples / "cantilever.toml", accuracy=3e-15, settings=["run.frames=2"])

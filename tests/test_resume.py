@@ -96,6 +96,48 @@ def test_a_damaged_or_missing_checkpoint_is_refused(tmp_path: Path, examples: Pa
     assert [path.name for path in tmp_path.iterdir()] == [NAME]
 
 
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"number": np.array([1, 2])},
+        {"number": np.array(np.inf)},
+        {"states": np.array([["a"]])},
+        {"states": np.zeros((500, 38))},
+        {"end_0": np.zeros((3, 2))},
+        {"end_0": np.zeros((9, 0))},
+        {"end_0": np.zeros((2, 2), dtype=complex)},
+    ],
+    ids=str,
+)
+def test_a_checkpoint_with_other_contents_is_refused(
+    wrong: dict[str, np.ndarray], tmp_path: Path, examples: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whole as an archive, and of this run, but not what a run leaves: one message, whatever it is."""
+    with monkeypatch.context() as patched:
+        _interrupt_after(7, patched)
+        with pytest.raises(KeyboardInterrupt):
+            geocosserat.run(examples / "cantilever.toml", tmp_path)
+    with np.load(tmp_path / NAME) as stored:
+        content = dict(stored)
+    np.savez(tmp_path / NAME, **{**content, **wrong})  # type: ignore[arg-type]
+    with pytest.raises((InputError, FileError), match="start without --resume"):
+        geocosserat.run(examples / "cantilever.toml", tmp_path, resume=True)
+
+
+def test_a_run_that_had_not_begun_begins(tmp_path: Path, examples: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Interrupted while its kernel was compiled, at a setting of its own."""
+    settings = ["run.elements=2", "run.degree=8", "run.frames=3"]
+
+    def stop(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patched:
+        patched.setattr(simulate, "load", stop)
+        with pytest.raises(KeyboardInterrupt):
+            geocosserat.run(examples / "cantilever.toml", tmp_path, settings=settings)
+    assert geocosserat.run(examples / "cantilever.toml", tmp_path, settings=settings, resume=True).reached
+
+
 def test_resuming_needs_a_folder(examples: Path) -> None:
     """Without --out there is nothing to go on from."""
     with pytest.raises(InputError, match=r"--resume: expected the folder of the interrupted run, found none; name it"):

@@ -20,7 +20,7 @@ from geocosserat.conductor.scene import SceneLike, load_any
 from geocosserat.conductor.search import planned
 from geocosserat.conductor.simulate import Attempt, Clock, Simulator
 from geocosserat.discretisation.mesh import Array, Mesh
-from geocosserat.kernel.compile import compiler
+from geocosserat.kernel.compile import CompileError, compiler
 from geocosserat.model.errors import InputError
 from geocosserat.model.records import Scene
 from geocosserat.planning.gap import position_gap
@@ -86,19 +86,26 @@ def cost(
         if method not in METHODS:
             known = f"methods out of {', '.join(METHODS)}"
             raise InputError(known, repr(method), "choose some of these", key="--methods")
-    read = load_any(scene, settings)
-    read = replace(read, run=replace(read.run, elements=None, degree=None, rtol=None, atol=None, method=None))
+    if not 0.0 < seconds < float("inf"):
+        raise InputError("a number of seconds above zero", repr(seconds), "leave it out for 60", key="--seconds")
+    read = _unset(load_any(scene, settings))
     backend = choose_backend(read.run.backend, tell)
     folder = None if out is None else Path(out)
     if folder is not None:
         claim(folder, overwrite, COST_FILES)
     try:
-        diagram = _Measured(read, backend, methods, seconds).diagram()
-    except (InputError, KeyboardInterrupt):
+        diagram = _Measured(read, backend, tuple(dict.fromkeys(methods)), seconds).diagram()
+    except (InputError, CompileError, KeyboardInterrupt):
         if folder is not None:
             give_back(folder)
         raise
     return Cost(diagram, () if folder is None else _write(diagram, folder))
+
+
+def _unset(scene: Scene) -> Scene:
+    """The scene without a setting of its own; what is left of friction is that of the finest runs."""
+    run = replace(scene.run, elements=None, degree=None, rtol=None, atol=None, method=None, accuracy=EXACT)
+    return replace(scene, run=run)
 
 
 class _Measured:
@@ -156,7 +163,7 @@ class _Measured:
         for name, frozen in (("unshearable", tuple(shear)), ("inextensible, unshearable", (stretch, *shear))):
             listed = ", ".join(f'"{mode}"' for mode in frozen)
             try:
-                scene = load_any(self.scene, [f"rod.frozen=[{listed}]"])
+                scene = _unset(load_any(self.scene, [f"rod.frozen=[{listed}]"]))
                 own, end, _ = self._reference(scene, OWN)
             except InputError as error:
                 yield ModelError(name, frozen, None, f"not possible here: {error}"), self.scene
@@ -183,7 +190,10 @@ class _Measured:
             failures += point.error is None
             errors.append(np.inf if point.error is None else point.error)
             stuck = len(errors) > 3 and min(errors[-2:]) > 0.5 * min(errors[:-2])
-            if failures == FAILURES or errors[-1] < least or stuck or point.seconds > self.seconds / 20:
+            if failures == FAILURES or errors[-1] < least or stuck:
+                return
+            if point.seconds > self.seconds / 20:
+                self.left_out += last - decade
                 return
 
     def _point(self, model: str, simulate: Simulator, setting: Setting, mesh: Mesh, exact: Array) -> Point:

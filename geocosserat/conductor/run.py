@@ -76,7 +76,7 @@ def run(
     if resume and folder is None:
         raise InputError("the folder of the interrupted run", "none", "name it with --out", key="--resume")
     backend = choose_backend(read.run.backend, tell)
-    keeper = Keeper(folder, _key(read), resume)
+    keeper = Keeper(folder, _key(read, backend), resume)
     if folder is not None:
         claim(folder, overwrite or resume, (SOLUTION, PICTURE, SUMMARY, CHECKPOINT))
     clock = Clock()
@@ -126,9 +126,9 @@ def _simulate(scene: Scene, backend: str, clock: Clock, keeper: Keeper) -> Found
         return search(Simulator(scene, "numpy", kernel_text, clock), keeper)
 
 
-def _key(scene: Scene) -> str:
-    """What a checkpoint belongs to: the scene and the program."""
-    return hashlib.sha256(f"{VERSION}\0{scene.source}".encode()).hexdigest()
+def _key(scene: Scene, backend: str) -> str:
+    """What a checkpoint belongs to: the scene, the program, and what it runs on, for plans differ by that."""
+    return hashlib.sha256(f"{VERSION}\0{backend}\0{scene.source}".encode()).hexdigest()
 
 
 def _write(solution: Solution, files: Sequence[Path], fields: Mapping[str, Any]) -> None:

@@ -10,6 +10,7 @@ from geocosserat.conductor.simulate import Attempt, Simulator, chosen_setting, d
 from geocosserat.discretisation.mesh import Array, Mesh
 from geocosserat.discretisation.sampling import frictionless, left_of_friction
 from geocosserat.discretisation.semidiscrete import discretise
+from geocosserat.model.errors import InputError
 from geocosserat.planning.gap import position_gap
 from geocosserat.planning.plan import Choice, Errors, Level, Verdict, plan
 from geocosserat.planning.resolution import sees_all
@@ -54,7 +55,8 @@ def search(simulate: Simulator, keeper: Keeper) -> Found:
     scene, seconds = simulate.scene, simulate.clock.seconds
     chosen = chosen_setting(scene)
     if chosen is not None:
-        attempt = simulate(chosen, scene.run.frames, lambda start: keeper.begin(0, start), keeper.frame)
+        frames = scene.run.frames
+        attempt = simulate(chosen, frames, lambda start: keeper.begin(0, start, frames), keeper.frame)
         seconds["solve"] = attempt.seconds
         return Found(attempt, None, attempt.trajectory.reached, attempt.trajectory.reason, ())
     found = planned(simulate, keeper, scene.run.accuracy or DEFAULT_ACCURACY)
@@ -82,7 +84,7 @@ class _Search:
         modelled = left_of_friction(self.scene.run) if frictionless(self.scene.model) else 0.0
         points = tuple(elements * degree for elements, degree in SIZES)
         choice = Choice(points, lambda size: most_decades(self._method(size), self.accuracy), self._method)
-        wanted = max(self.accuracy - modelled, 0.5 * self.accuracy)
+        wanted = self.accuracy - modelled if self.accuracy > 1.05 * modelled else modelled
         steps = plan(wanted, choice, Errors(self._gap, self._strayed), self.first)
         request = next(steps)
         whole: dict[int, Attempt] = {}
@@ -101,7 +103,7 @@ class _Search:
         estimate = None if verdict.estimate is None else max(verdict.estimate + modelled, ROUND_OFF)
         reached = estimate is not None and estimate <= self.accuracy
         last = next(reversed(whole.values()), kept)
-        return Found(kept, estimate, reached, _reason(kept, last, estimate, reached), tuple(self.runs))
+        return Found(kept, estimate, reached, _reason(kept, last, estimate, reached, modelled), tuple(self.runs))
 
     def _run(self, level: Level, whole: bool) -> Attempt | None:
         """One more run of the plan; None where no more is needed than what is known from before an interruption."""
@@ -115,6 +117,8 @@ class _Search:
             known = _left(attempt)
             self.keeper.end(known)
         mesh = attempt.rod.mesh if attempt else discretise(self.scene, setting.elements, setting.degree).mesh
+        if known.shape not in ((1, self.scene.model.group.space), (len(mesh.u) + 1, self.scene.model.group.space)):
+            raise InputError(f"{len(mesh.u)} positions", f"{len(known) - 1}", "start without --resume", key="--resume")
         self.outcomes.append(Outcome(mesh, known[1:], float(known[0, 0])))
         self.settings.append(setting)
         taken = attempt.seconds if attempt else 0.0
@@ -125,7 +129,7 @@ class _Search:
         if not whole:
             return self.simulate(setting, 2)
         frames, keeper = self.scene.run.frames, self.keeper
-        return self.simulate(setting, frames, lambda start: keeper.begin(number, start), keeper.frame)
+        return self.simulate(setting, frames, lambda start: keeper.begin(number, start, frames), keeper.frame)
 
     def _setting(self, level: Level) -> Setting:
         method = self._method(level.size)
@@ -170,12 +174,14 @@ def _left(attempt: Attempt) -> Array:
     return np.concatenate([np.full((1, space), drift(rod, trajectory)), positions])
 
 
-def _reason(kept: Attempt, last: Attempt, estimate: float | None, reached: bool) -> str:
-    """Why the accuracy was not reached; last: the last run that might have had it."""
+def _reason(kept: Attempt, last: Attempt, estimate: float | None, reached: bool, modelled: float) -> str:
+    """Why the accuracy was not reached; last: the last run that might have had it; modelled: what no run can have."""
     if reached or not kept.trajectory.reached:
         return kept.trajectory.reason
     if not last.trajectory.reached:
         return f"a finer run, for the accuracy asked for, did not come to its end: {last.trajectory.reason}"
+    if estimate is not None and modelled > 0.3 * estimate:
+        return f"rotations without friction are a limit, of which {modelled:.1g} is left; ask for a larger error"
     if estimate is not None and kept.setting.rtol <= LEAST[kept.setting.method]:
         return f"the accuracy asked for is below round-off: at the least tolerance, about {estimate:.1g} is left"
     return "the accuracy asked for was not reached by refinement"

@@ -17,6 +17,7 @@ from geocosserat.kernel.native import NativeRod
 from geocosserat.kernel.pure import NumpyRod
 from geocosserat.model.errors import InputError
 from geocosserat.model.expressions import switch_times
+from geocosserat.model.formulas import stepping
 from geocosserat.model.records import Scene
 from geocosserat.planning.settings import DEFAULT_ACCURACY, Setting
 from geocosserat.results.progress import progress
@@ -160,15 +161,9 @@ def drift(rod: SemiDiscrete, trajectory: Trajectory) -> float:
 
 
 def switches_of(scene: Scene) -> tuple[float, ...]:
-    """Instants at which a load of the scene switches."""
-    model = scene.model
-    loads = [end.force or () for end in (model.left, model.right)] + [
-        end.torque or () for end in (model.left, model.right)
-    ]
-    loads += [end.twist or () for end in (model.left, model.right)]
-    loads += [vector for effect in model.effects for vector in effect.values().values()]
-    loads += [model.law.stress or ()] if model.law else []
-    return tuple(t for load in loads for e in load for t in switch_times(e, scene.run.until, model.parameters))
+    """Instants at which something of the scene switches."""
+    parameters = scene.model.parameters
+    return tuple(t for e in stepping(scene, "t") for t in switch_times(e, scene.run.until, parameters))
 
 
 def _check_room(frames: int, size: int) -> None:

@@ -13,7 +13,8 @@ from geocosserat.discretisation.pose import Poses, cross_matrix, joined, march, 
 from geocosserat.discretisation.sampling import along, frictionless, sample
 from geocosserat.discretisation.structure import RodStructure
 from geocosserat.discretisation.structuring import structure_of
-from geocosserat.model.expressions import Call, Expression, evaluate, jump_positions, steps, symbols
+from geocosserat.model.expressions import Expression, evaluate, jump_positions
+from geocosserat.model.formulas import stepping
 from geocosserat.model.records import End, Scene
 
 BATCH = 2**22
@@ -110,16 +111,7 @@ class SemiDiscrete:
 def _steps(scene: Scene) -> list[float]:
     """Where coefficients jump: elements must end there."""
     model = scene.model
-    expressions: list[Expression] = [*model.reference, *scene.start.strain]
-    for row in (*model.stiffness, *model.friction):
-        expressions.extend(row)
-    for effect in model.effects:
-        for values in effect.values().values():
-            expressions.extend(values)
-    if model.law:
-        jumping = (Call("heaviside", step) for e in model.law.stress or () for step in steps(e))
-        expressions.extend(e for e in jumping if symbols(e) <= {"u", *model.parameters})
-    return [x for e in expressions for x in jump_positions(e, model.length, model.parameters)]
+    return [x for e in stepping(scene, "u") for x in jump_positions(e, model.length, model.parameters)]
 
 
 def _course(end: End, scene: Scene) -> Course | None:

@@ -127,9 +127,14 @@ def _part(error: Guess, other: Guess) -> float:
     return min(0.9, max(0.1, error.likely / (error.likely + other.likely))) if error.known and other.known else 0.5
 
 
+def _left(gap: float, ratio: float) -> float:
+    """The error of the finer of two runs, where it is so much of that of the coarser one; the gap at most."""
+    return gap * ratio / (1.0 - ratio) if ratio < 0.5 else gap
+
+
 def _finer_in_time(gap: float, decades: float) -> Guess:
     """The error in time of a run so many decades finer than one that lies so far from it."""
-    return Guess(gap * min(1.0, 10.0 ** (0.2 - 0.7 * decades)), gap * 10.0 ** (-0.95 * decades))
+    return Guess(_left(gap, 10.0 ** (0.2 - 0.7 * decades)), gap * 10.0 ** (-0.95 * decades))
 
 
 def _finer_in_space(gap: float, growth: float, in_time: float = 0.0) -> Guess:
@@ -138,7 +143,7 @@ def _finer_in_space(gap: float, growth: float, in_time: float = 0.0) -> Guess:
     On a mesh that resolves the rod, errors are powers of one number by the number of points; nothing but a modest order
     can be relied upon.
     """
-    cautious = gap * growth**-2.5
+    cautious = _left(gap, growth**-2.5)
     likely = cautious if gap > 0.1 else gap**growth
     return Guess(cautious, likely if gap > 2.0 * in_time else 0.0)
 

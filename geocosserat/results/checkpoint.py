@@ -50,16 +50,23 @@ def load_checkpoint(folder: Path) -> Checkpoint:
     try:
         with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as stored:
             ends = tuple(np.asarray(stored[f"end_{i}"]) for i in range(len(stored.files) - 3))
-            found = Checkpoint(str(stored["key"]), int(stored["number"]), np.asarray(stored["states"]), ends)
+            number, states = np.asarray(stored["number"]), np.asarray(stored["states"])
+            if number.shape or number.dtype.kind != "i":
+                raise ValueError("the number of the run is none")
+            found = Checkpoint(str(stored["key"]), int(number), states, ends)
     except FileNotFoundError:
         raise FileError(path, "a checkpoint to go on from", "none", "start without --resume") from None
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
+    except (OSError, ValueError, KeyError, EOFError, AttributeError, zipfile.BadZipFile) as error:
         raise FileError(
             path, "a checkpoint to go on from", f"a damaged file ({error})", "start without --resume"
         ) from None
-    if not all(array.ndim == 2 and np.all(np.isfinite(array)) for array in (found.states, *found.ends)):
+    if not all(_usable(array) for array in (found.states, *found.ends)):
         raise FileError(path, "a checkpoint to go on from", "states that are not usable", "start without --resume")
     return found
+
+
+def _usable(array: Array) -> bool:
+    return array.ndim == 2 and array.dtype == np.float64 and bool(np.all(np.isfinite(array)))
 
 
 class Keeper:
@@ -86,11 +93,12 @@ class Keeper:
             self.ends = list(self.resumed.ends)
         self.saved = time.monotonic()
 
-    def begin(self, number: int, start: Array) -> Array:
-        """States (frames, size) of this run that are there already; at least the start."""
+    def begin(self, number: int, start: Array, frames: int) -> Array:
+        """States (frames so far, size) of this run that are there already; at least the start."""
         done = self.resumed.states if self.resumed is not None and self.holds(number) else start[None]
-        if done.shape[1] != len(start):
-            raise InputError(f"states of {len(start)} numbers", f"{done.shape[1]}", "start without --resume")
+        if done.shape[1] != len(start) or len(done) > frames:
+            expected, found = f"up to {frames} states of {len(start)} numbers", f"{done.shape[0]} of {done.shape[1]}"
+            raise InputError(expected, found, "start without --resume", key="--resume")
         self.number, self.states = number, list(done)
         return np.array(done)
 
@@ -116,7 +124,7 @@ class Keeper:
     def save(self) -> None:
         """Writes the checkpoint now."""
         if self.folder is not None:
-            states = np.array(self.states, ndmin=2)
+            states = np.array(self.states) if self.states else np.empty((0, 0))
             save_checkpoint(Checkpoint(self.key, self.number, states, tuple(self.ends)), self.folder)
         self.saved = time.monotonic()
 

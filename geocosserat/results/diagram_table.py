@@ -44,7 +44,9 @@ def notes(diagram: Diagram) -> list[str]:
         "errors are of positions at the end, relative to the length"
     ]
     for model in diagram.models:
-        said = f"{model.error:.1e} from the scene as given, however finely computed" if model.error else model.reason
+        said = model.reason
+        if model.error is not None:
+            said = f"{model.error:.1e} from the scene as given, however finely computed"
         lines.append(f"{model.model}: {said}")
     failed = [point for point in diagram.points if point.error is None]
     for (method, reason), count in Counter((point.method, _short(point.reason)) for point in failed).most_common(5):
