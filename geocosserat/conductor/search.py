@@ -6,11 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from geocosserat.conductor.simulate import Attempt, Simulator, chosen_setting, drift
+from geocosserat.conductor.simulate import Attempt, Simulator, chosen_setting, drift, unbalanced
 from geocosserat.discretisation.mesh import Array, Mesh
 from geocosserat.discretisation.sampling import frictionless, left_of_friction
 from geocosserat.discretisation.semidiscrete import discretise
 from geocosserat.model.errors import InputError
+from geocosserat.model.records import Scene
 from geocosserat.planning.gap import position_gap
 from geocosserat.planning.plan import Choice, Errors, Level, Verdict, plan
 from geocosserat.planning.resolution import sees_all
@@ -26,6 +27,9 @@ from geocosserat.planning.settings import (
     tolerance,
 )
 from geocosserat.results.checkpoint import Keeper
+
+LEDGER = 10.0
+"""What the balance of energy may lack, in units of the accuracy."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,11 +47,12 @@ class Found:
 @dataclass(frozen=True, eq=False)
 class Outcome:
     """What a plan compares: the rod at the end, positions (nodes, space), empty if the run did not come to its end; how
-    far a held end strayed, a length."""
+    far a held end strayed, a length; what the balance of energy lacks, relative to its largest term."""
 
     mesh: Mesh
     positions: Array
     strayed: float
+    unbalanced: float
 
 
 def search(simulate: Simulator, keeper: Keeper) -> Found:
@@ -85,7 +90,7 @@ class _Search:
         points = tuple(elements * degree for elements, degree in SIZES)
         choice = Choice(points, lambda size: most_decades(self._method(size), self.accuracy), self._method)
         wanted = self.accuracy - modelled if self.accuracy > 1.05 * modelled else modelled
-        steps = plan(wanted, choice, Errors(self._gap, self._strayed), self.first)
+        steps = plan(wanted, choice, Errors(self._gap, self._strayed, self._unbalanced), self.first)
         request = next(steps)
         whole: dict[int, Attempt] = {}
         while True:
@@ -114,12 +119,12 @@ class _Search:
             attempt = self._simulated(number, setting, whole)
         if known is None:
             assert attempt is not None
-            known = _left(attempt)
+            known = _left(self.scene, attempt)
             self.keeper.end(known)
         mesh = attempt.rod.mesh if attempt else discretise(self.scene, setting.elements, setting.degree).mesh
         if known.shape not in ((1, self.scene.model.group.space), (len(mesh.u) + 1, self.scene.model.group.space)):
             raise InputError(f"{len(mesh.u)} positions", f"{len(known) - 1}", "start without --resume", key="--resume")
-        self.outcomes.append(Outcome(mesh, known[1:], float(known[0, 0])))
+        self.outcomes.append(Outcome(mesh, known[1:], float(known[0, 0]), float(known[0, 1])))
         self.settings.append(setting)
         taken = attempt.seconds if attempt else 0.0
         self.runs.append({**asdict(setting), "whole": whole, "seconds": taken, "predicted": self._predicted(setting)})
@@ -163,15 +168,22 @@ class _Search:
     def _strayed(self, number: int) -> float:
         return self.outcomes[number].strayed / self.scene.model.length
 
+    def _unbalanced(self, number: int) -> float:
+        """An error in time: rods that settle forget theirs, and the energies that led there do not."""
+        return self.outcomes[number].unbalanced / LEDGER
 
-def _left(attempt: Attempt) -> Array:
-    """Where a run left the rod, as one array: how far a held end strayed, then positions (nodes, space), if any."""
+
+def _left(scene: Scene, attempt: Attempt) -> Array:
+    """Where a run left the rod, as one array: how far a held end strayed and what the balance of energy lacks, in a row
+    of their own, then positions (nodes, space), if any."""
     rod, trajectory = attempt.rod, attempt.trajectory
     space = rod.structure.group.space
     if not trajectory.reached:
         return np.zeros((1, space))
     positions = rod.poses(trajectory.states[-1], trajectory.times[-1]).position
-    return np.concatenate([np.full((1, space), drift(rod, trajectory)), positions])
+    first = np.zeros((1, space))
+    first[0, :2] = drift(rod, trajectory), unbalanced(scene, attempt)
+    return np.concatenate([first, positions])
 
 
 def _reason(kept: Attempt, last: Attempt, estimate: float | None, reached: bool, modelled: float) -> str:

@@ -160,6 +160,19 @@ def drift(rod: SemiDiscrete, trajectory: Trajectory) -> float:
     return float(np.linalg.norm(last[far] - home))
 
 
+def unbalanced(scene: Scene, attempt: Attempt) -> float:
+    """What the balance of energy lacks over a run, relative to its largest term, or to a thousandth of a bend by a
+    radian if that is more: of a rod at rest there is nothing to balance."""
+    kernel, trajectory = attempt.kernel, attempt.trajectory
+    first, last = (
+        np.array([kernel.observe(float(t), y)[2], *y[-2:]])
+        for t, y in ((trajectory.times[i], trajectory.states[i]) for i in (0, -1))
+    )
+    stored, dissipated, work = last - first
+    scale = max(abs(stored), abs(dissipated), abs(work), 1e-3 * _unit_of_energy(scene, attempt.rod, kernel))
+    return float(abs(stored + dissipated - work) / scale)
+
+
 def switches_of(scene: Scene) -> tuple[float, ...]:
     """Instants at which something of the scene switches."""
     parameters = scene.model.parameters

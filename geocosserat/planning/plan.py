@@ -59,10 +59,12 @@ class Choice:
 
 @dataclass(frozen=True)
 class Errors:
-    """What runs tell by their numbers, from 0. gap: between a coarser one and a finer one. known: of one by itself."""
+    """What runs tell by their numbers, from 0. gap: between a coarser one and a finer one. in_space, in_time: what is
+    known of one by itself."""
 
     gap: Callable[[int, int], float]
-    known: Callable[[int], float]
+    in_space: Callable[[int], float]
+    in_time: Callable[[int], float]
 
 
 @dataclass(frozen=True)
@@ -75,6 +77,9 @@ class Guess:
     @property
     def known(self) -> bool:
         return self.cautious < math.inf
+
+    def at_least(self, error: float) -> "Guess":
+        return Guess(max(self.cautious, error), max(self.likely, error))
 
 
 def plan(accuracy: float, choice: Choice, errors: Errors, first: int = 0) -> Generator[Request, bool, Verdict]:
@@ -113,8 +118,7 @@ def plan(accuracy: float, choice: Choice, errors: Errors, first: int = 0) -> Gen
                     if (yield Request(Level(old.size, new.decades), whole=False)):
                         in_time = _finer_in_time(errors.gap(before, asked - 1), decades)
                         in_space = _finer_in_space(errors.gap(asked - 1, kept), growth, in_time.cautious)
-            known = errors.known(kept)
-            in_space = Guess(max(in_space.cautious, known), max(in_space.likely, known))
+            in_space, in_time = in_space.at_least(errors.in_space(kept)), in_time.at_least(errors.in_time(kept))
             estimate = in_space.cautious + in_time.cautious
             if estimate <= accuracy:
                 return Verdict(kept, estimate, True)
