@@ -26,13 +26,21 @@ from geocosserat.solver.integrate import integrate
 def solve(problem: Problem, elements: int, degree: int, method: str, rtol: float) -> tuple[float, float, int]:
     """Error, seconds, and steps."""
     rod, kernel = rod_of(problem, elements, degree)
-    times = np.array([0.0, UNTIL])
+    state, seconds, steps = _timed(rod, kernel, UNTIL, method, rtol)
+    return error_of_strains(problem, rod.turn(state), elements, degree), seconds, steps
+
+
+def _timed(
+    rod: SemiDiscrete, kernel: NativeRod | NumpyRod, until: float, method: str, rtol: float
+) -> tuple[np.ndarray, float, int]:
+    """The state at the end, seconds, steps."""
+    times = np.array([0.0, until])
     begin = time.perf_counter()
     done = integrate(kernel, rod.state, times, method, rtol, rtol)
     seconds = time.perf_counter() - begin
     if not done.reached:
         raise RuntimeError(f"ours: {done.reason}")
-    return error_of_strains(problem, rod.turn(done.states[-1]), elements, degree), seconds, done.steps
+    return done.states[-1], seconds, done.steps
 
 
 @lru_cache(maxsize=32)
@@ -51,11 +59,5 @@ def _cantilever(degree: int) -> tuple[SemiDiscrete, NativeRod | NumpyRod]:
 def settle(degree: int, method: str, until: float, rtol: float) -> tuple[float, float, int]:
     """Error of the tip, seconds, steps."""
     rod, kernel = _cantilever(degree)
-    times = np.array([0.0, until])
-    begin = time.perf_counter()
-    done = integrate(kernel, rod.state, times, method, rtol, rtol)
-    seconds = time.perf_counter() - begin
-    if not done.reached:
-        raise RuntimeError(f"ours: {done.reason}")
-    found = rod.poses(done.states[-1], until).position[-1]
-    return float(np.linalg.norm(found - tip())), seconds, done.steps
+    state, seconds, steps = _timed(rod, kernel, until, method, rtol)
+    return float(np.linalg.norm(rod.poses(state, until).position[-1] - tip())), seconds, steps

@@ -92,11 +92,13 @@ class _Search:
         wanted = self.accuracy - modelled if self.accuracy > 1.05 * modelled else modelled
         steps = plan(wanted, choice, Errors(self._gap, self._strayed, self._unbalanced), self.first)
         request = next(steps)
-        whole: dict[int, Attempt] = {}
+        whole: dict[int, Attempt] = {}  # the last two that may be kept
         while True:
             number, attempt = len(self.outcomes), self._run(request.level, request.whole)
             if request.whole and attempt is not None:
-                whole = {**dict(list(whole.items())[-1:]), number: attempt}  # the last two: more are never kept
+                whole[number] = attempt
+                for old in list(whole)[:-2]:
+                    del whole[old]
             try:
                 request = steps.send(bool(self.outcomes[-1].positions.size))
             except StopIteration as end:
@@ -106,7 +108,7 @@ class _Search:
         if kept is None:  # its states were given up before an interruption
             kept = self.simulate(self.settings[verdict.kept], self.scene.run.frames)
         estimate = None if verdict.estimate is None else max(verdict.estimate + modelled, ROUND_OFF)
-        reached = estimate is not None and estimate <= self.accuracy
+        reached = verdict.reached and estimate is not None and estimate <= self.accuracy
         last = next(reversed(whole.values()), kept)
         return Found(kept, estimate, reached, _reason(kept, last, estimate, reached, modelled), tuple(self.runs))
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import os
 import textwrap
+from collections.abc import Callable
 from pathlib import Path
 
 import matplotlib
@@ -54,8 +55,7 @@ def _draw(diagram: Diagram) -> Figure:
     return result
 
 
-def _points(axes: Axes, diagram: Diagram, shapes: dict[str, str], along: object) -> None:
-    assert callable(along)
+def _points(axes: Axes, diagram: Diagram, shapes: dict[str, str], along: Callable[[Point], float]) -> None:
     top = max((p.error for p in diagram.points if p.error is not None), default=1.0)
     for point in diagram.points:
         failed = point.error is None
