@@ -77,7 +77,7 @@ class Simulator:
         rod, kernel, text = self._on(setting.elements, setting.degree)
         times = np.linspace(0.0, scene.run.until, frames)
         _check_room(frames, len(rod.state))
-        atol = tolerances(rod, setting.rtol, scene.run.atol, _unit_of_energy(scene, rod, kernel))
+        atol = tolerances(rod, setting.rtol, scene.run.atol, unit_of_energy(scene, rod, kernel))
         done = begin(rod.state)
         switches = switches_of(scene)
         start = time.perf_counter()
@@ -124,7 +124,7 @@ def tolerances(rod: SemiDiscrete, rtol: float, atol: float | None, energy: float
     return np.concatenate([along, carried[: rod.structure.carried], [strain * energy] * 2])
 
 
-def _unit_of_energy(scene: Scene, rod: SemiDiscrete, kernel: NativeRod | NumpyRod) -> float:
+def unit_of_energy(scene: Scene, rod: SemiDiscrete, kernel: NativeRod | NumpyRod) -> float:
     """Energy stored at the start, or that of bending the softest way by a radian if that is more."""
     model, group = scene.model, scene.model.group
     stiff = stiffnesses(model)
@@ -169,7 +169,7 @@ def unbalanced(scene: Scene, attempt: Attempt) -> float:
         for t, y in ((trajectory.times[i], trajectory.states[i]) for i in (0, -1))
     )
     stored, dissipated, work = last - first
-    scale = max(abs(stored), abs(dissipated), abs(work), 1e-3 * _unit_of_energy(scene, attempt.rod, kernel))
+    scale = max(abs(stored), abs(dissipated), abs(work), 1e-3 * unit_of_energy(scene, attempt.rod, kernel))
     return float(abs(stored + dissipated - work) / scale)
 
 

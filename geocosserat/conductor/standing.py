@@ -1,0 +1,159 @@
+"""The rod of a scene as a system of equations for where it rests."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial import legendre
+from numpy.typing import NDArray
+
+from geocosserat.conductor.simulate import tolerances, unit_of_energy
+from geocosserat.discretisation.mesh import Array, Mesh
+from geocosserat.discretisation.pose import Poses
+from geocosserat.discretisation.sampling import friction_of, left_of_friction, slowest
+from geocosserat.discretisation.semidiscrete import SemiDiscrete, discretise
+from geocosserat.discretisation.structure import RodStructure
+from geocosserat.kernel.library import KernelText
+from geocosserat.kernel.load import load
+from geocosserat.kernel.native import NativeRod
+from geocosserat.kernel.pure import NumpyRod
+from geocosserat.model.errors import InputError
+from geocosserat.model.expressions import symbols
+from geocosserat.model.formulas import formulas
+from geocosserat.model.records import Scene
+from geocosserat.solver.consistent import consistent
+from geocosserat.statics.linear import Complex, Linear
+from geocosserat.statics.system import System
+
+STRAYS = 1e-2
+"""A motion that moves an end from where it is held by more than this, relative to the rest, is not one of the rod's."""
+
+
+@dataclass(frozen=True, eq=False)
+class Standing:
+    """A rod on a mesh, its kernel, the equations of its rest, and about how fast it relaxes (1 / time)."""
+
+    scene: Scene
+    rod: SemiDiscrete
+    kernel: NativeRod | NumpyRod
+    text: KernelText
+    system: System
+    rate: float
+
+    def poses(self, x: Array) -> Poses:
+        return self.rod.poses(self.system.state(x))
+
+    def spectrum(self, linear: Linear, x: Array) -> tuple[Complex, Complex]:
+        """Growth rates and motions as `Linear.spectrum`, of the rod alone: without those by which an end that is held
+        comes back to its place."""
+        growth, motions = linear.spectrum(self.rate)
+        kept = [i for i in range(len(growth)) if not self._strays(x, motions[:, i])]
+        return growth[kept], motions[:, kept]
+
+    def displaced(self, x: Array, motion: Array) -> Array:
+        """(nodes, space) how the nodes move with a motion (n,), complex as it is; per unit of it."""
+        h = 1e-6
+        parts = []
+        for part in (motion.real, motion.imag):
+            there, here = (self.poses(self.system.moved(x, sign * h * part)).position for sign in (1, -1))
+            parts.append((there - here) / (2 * h))
+        return parts[0] + 1j * parts[1]
+
+    def _strays(self, x: Array, motion: Array) -> bool:
+        structure = self.rod.structure
+        far = structure.right if structure.base == "left" else structure.left
+        if far.kind == "free" or structure.joined:
+            return False
+        h = 1e-6
+        node = -1 if structure.base == "left" else 0
+        moved = []
+        for part in (motion.real, motion.imag):
+            there, here = (self.poses(self.system.moved(x, sign * h * part)) for sign in (1, -1))
+            shift = np.linalg.norm(there.position - here.position, axis=1) / self.scene.model.length
+            turn = np.linalg.norm(there.rotation - here.rotation, axis=(1, 2))
+            moved.append((shift, turn))
+        shift, turn = (np.hypot(*pair) for pair in zip(*moved, strict=True))
+        gone = shift[node] + (turn[node] if far.kind == "clamped" else 0.0)
+        return bool(gone > STRAYS * (shift + turn).max())
+
+    def from_mesh(self, other: "Standing", x: Array) -> Array:
+        """Coordinates on this mesh of a state on another one."""
+        y, old = self.system.start.copy(), other.system.state(x)
+        rows = len(self.rod.structure.state_names)
+        here, there = (s.rod.mesh.elements * s.rod.mesh.degree for s in (self, other))
+        fields = old[: rows * there].reshape(rows, there)
+        y[: rows * here] = _at(other.rod.mesh, fields, self.rod.mesh.u_point).ravel()
+        carried = self.rod.structure.carried
+        y[rows * here : rows * here + carried] = old[rows * there : rows * there + carried]
+        return y[self.system.kept] / self.system.scale
+
+
+def _at(mesh: Mesh, fields: Array, u: Array) -> Array:
+    """Fields given at the Gauss points (rows, points), as polynomials in each element, at u."""
+    n, p = mesh.elements, mesh.degree
+    element = np.clip(np.searchsorted(mesh.edges, u, side="right") - 1, 0, n - 1)
+    x = (u - (mesh.edges[element] + mesh.half[element])) / mesh.half[element]
+    modes = fields.reshape(-1, n, p) @ np.linalg.inv(legendre.legvander(mesh.reference.points, p - 1)).T
+    found: Array = np.einsum("rmk,mk->rm", modes[:, element], legendre.legvander(x, p - 1))
+    return found
+
+
+def check_standing(scene: Scene) -> None:
+    """Raises InputError if a scene has nothing that could be at rest."""
+    model = scene.model
+    if any("t" in symbols(e) for e in formulas(scene)):
+        raise InputError("a scene that does not vary with t", "a formula of t", "put a number in its place", key="t")
+    if model.joined:
+        raise InputError(
+            "a rod with two ends",
+            "joined ends",
+            "clamp both of them at the same place instead",
+            key="ends.joined",
+        )
+    kinds = {model.left.kind, model.right.kind}
+    if "driven" in kinds and "free" not in kinds:
+        raise InputError(
+            "a driven end opposite to a free one", "an end that is held there", "set it free", key="ends"
+        )
+
+
+def stand(scene: Scene, size: tuple[int, int], kernel_text: Callable[[RodStructure], KernelText], backend: str) -> Standing:
+    """The rod of a scene on a mesh of (elements, degree).
+
+    Raises InputError if the scene turns for ever in what it sees of the world.
+    """
+    rod = discretise(scene, *size, anchored=True)
+    structure = rod.structure
+    if structure.prescribed and structure.sight != "nothing":
+        raise InputError(
+            "a driven end in a scene that looks the same from it at all times",
+            "effects or loads fixed in the world",
+            "use `run`: there is a periodic state at best",
+            key="ends",
+        )
+    text = kernel_text(structure)
+    kernel = load(text, rod, backend)
+    state = consistent(kernel, 0.0, rod.state)
+    kept, around = _mattering(rod)
+    scale = tolerances(rod, 1.0, None, unit_of_energy(scene, rod, kernel))[kept]
+    system = System(kernel, state, kept, scale, around)
+    rate = slowest(scene.model, friction_of(scene.model, rod.mesh, left_of_friction(scene.run)))
+    return Standing(scene, rod, kernel, text, system, rate)
+
+
+def _mattering(rod: SemiDiscrete) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
+    """Indices of the entries of the state that the rod's rest depends on, and which of them form a unit quaternion:
+    the turn, stresses, and of the pose of a base what is seen of it and may change."""
+    structure = rod.structure
+    fields = len(structure.state_names) * rod.mesh.elements * rod.mesh.degree
+    space = structure.group.translations
+    base = structure.left if structure.base == "left" else structure.right
+    seen = structure.sight if structure.carried else "nothing"
+    pose = np.zeros(structure.carried, dtype=bool)
+    pose[:space] = seen == "pose" and base.kind == "free"
+    pose[space:] = seen != "nothing"
+    kept = np.concatenate([np.arange(fields), fields + np.flatnonzero(pose)])
+    around = np.zeros(len(kept), dtype=bool)
+    if structure.carried == 7 and seen != "nothing":
+        around[-4:] = True
+    return kept, around

@@ -1,0 +1,99 @@
+"""How a rod is brought to rest: by Newton's method, or by letting it relax in ever longer steps."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from geocosserat.kernel.contract import Array
+from geocosserat.statics.linear import Linear
+from geocosserat.statics.system import System
+
+REACH = 1.0
+"""Longest step in natural sizes: strains of 1, bends by a radian over the length."""
+
+SMALL, ROUND_OFF = 1e-8, 1e-14
+"""Steps below the first are taken as they come; below the second there is nothing left to do."""
+
+SHORTEST = 1e-4
+
+
+class NotAtRest(Exception):
+    """No state of rest was found from there; the text says why."""
+
+
+@dataclass(frozen=True, eq=False)
+class Rest:
+    """A state of rest: its coordinates, the equations linearised there, the step that one more round would take (in
+    natural sizes), and how many rounds there were."""
+
+    x: Array
+    linear: Linear
+    left: float
+    rounds: int
+
+
+def size(step: Array) -> float:
+    """The largest entry."""
+    return float(np.abs(step).max(initial=0.0))
+
+
+def newton(system: System, x: Array, most: int = 50) -> Rest:
+    """The state of rest that Newton's method leads to from x.
+
+    A step is cut until the next one, by the same matrix, would be shorter (Deuflhard, "Newton Methods for Nonlinear
+    Problems", section 3.3: a test that does not depend on how the equations are scaled).
+
+    Raises NotAtRest if it leads nowhere.
+    """
+    last = np.inf
+    for rounds in range(1, most + 1):
+        linear = system.linear(x)
+        try:
+            step = linear.step(system.residual(x))
+        except np.linalg.LinAlgError as error:
+            raise NotAtRest(str(error)) from error
+        now = size(step)
+        if now < ROUND_OFF or (now < SMALL and now > 0.1 * last):
+            return Rest(x, linear, now, rounds)
+        x = system.moved(x, step) if now < SMALL else _cut(system, x, linear, step, now)
+        last = now
+    raise NotAtRest(f"Newton's method still takes steps of {last:.1g} after {most} rounds")
+
+
+def _cut(system: System, x: Array, linear: Linear, step: Array, length: float) -> Array:
+    """x after as much of the step as brings it nearer to rest."""
+    part = min(1.0, REACH / length)
+    while part > SHORTEST:
+        trial = system.moved(x, part * step)
+        try:
+            next_length = size(linear.step(system.residual(trial)))
+        except np.linalg.LinAlgError:
+            next_length = np.inf
+        if next_length <= (1 - part / 4) * length:
+            return trial
+        part /= 2
+    raise NotAtRest("no step of Newton's method brings the rod nearer to rest")
+
+
+def relax(system: System, x: Array, rate: float, most: int = 400) -> Rest:
+    """The state of rest that the rod settles to from x: implicit Euler steps, ever longer ones, then Newton's method.
+
+    rate: about how fast it relaxes (1 / time).
+
+    Raises NotAtRest if it does not settle.
+    """
+    now = max(size(system.residual(x)) / 0.1, rate)
+    for _ in range(most):
+        linear, f = system.linear(x), system.residual(x)
+        try:
+            if size(linear.step(f)) < 1e-3 and now < rate:
+                return newton(system, x)
+            step = linear.step(f, now)
+            while size(step) > 0.3:
+                now *= 4.0
+                step = linear.step(f, now)
+        except np.linalg.LinAlgError as error:
+            raise NotAtRest(str(error)) from error
+        x = system.moved(x, step)
+        now *= 0.4
+    raise NotAtRest(f"the rod does not settle in {most} steps")

@@ -1,0 +1,120 @@
+"""States of rest followed while one number p changes, past folds as well.
+
+Steps are measured along the curve (x, p), not in p, so that the curve may turn back: Keller's pseudo-arclength
+("Numerical solution of bifurcation and nonlinear eigenvalue problems", 1977).
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from geocosserat.kernel.contract import Array
+from geocosserat.statics.linear import Linear
+from geocosserat.statics.newton import NotAtRest, size
+from geocosserat.statics.system import System
+
+FIRST, LONGEST, SHORTEST = 0.02, 0.05, 1e-7
+"""Steps along the curve, in units of the interval of p and of natural sizes together."""
+
+EXACT, ROUNDS = 1e-9, 8
+
+
+class Family(Protocol):
+    """Systems that depend on a number p in [0, 1]."""
+
+    def residual(self, x: Array, p: float) -> Array: ...
+
+    def linear(self, x: Array, p: float) -> Linear: ...
+
+    def slope(self, x: Array, p: float) -> Array:
+        """How the residual changes with p."""
+
+    def moved(self, x: Array, step: Array) -> Array: ...
+
+
+@dataclass(frozen=True, eq=False)
+class Place:
+    """A point of a path: state, number, and the direction (along, onward) in which the path goes on; of length one,
+    where a length is the mean square of the entries of x, and p."""
+
+    x: Array
+    p: float
+    along: Array
+    onward: float
+
+
+@dataclass(frozen=True, eq=False)
+class Eased:
+    """A system whose forces at the start are balanced from outside, by p = 1 less and less."""
+
+    system: System
+    held: Array
+
+    @classmethod
+    def at(cls, system: System) -> "Eased":
+        return cls(system, system.residual(system.x))
+
+    def residual(self, x: Array, p: float) -> Array:
+        return self.system.residual(x) - (1.0 - p) * self.held
+
+    def linear(self, x: Array, p: float) -> Linear:
+        return self.system.linear(x)
+
+    def slope(self, x: Array, p: float) -> Array:
+        return self.held
+
+    def moved(self, x: Array, step: Array) -> Array:
+        return self.system.moved(x, step)
+
+
+def follow(family: Family, x: Array, p: float = 0.0, to: float = 1.0, most: int = 2000) -> Iterator[Place]:
+    """The path of states of rest from (x, p), the first of them, until p passes `to` or comes back to where it began.
+
+    Raises NotAtRest if it cannot be followed further.
+    """
+    begin, sign = p, float(np.sign(to - p))
+    place = _directed(family, x, p, np.zeros_like(x), sign)
+    yield place
+    length = FIRST
+    for _ in range(most):
+        try:
+            found, rounds = _next(family, place, length)
+        except (NotAtRest, np.linalg.LinAlgError) as error:
+            length /= 2
+            if length < SHORTEST:
+                raise NotAtRest(f"the path of states ends at {place.p:.6g} of the interval: {error}") from error
+            continue
+        place = found
+        yield place
+        if sign * (place.p - to) >= 0 or sign * (place.p - begin) < 0:
+            return
+        length = min(LONGEST, length * (1.5 if rounds <= 3 else 0.7 if rounds > 5 else 1.0))
+    raise NotAtRest(f"the path of states is longer than {most} steps")
+
+
+def _next(family: Family, place: Place, length: float) -> tuple[Place, int]:
+    """The place a step further, and after how many rounds of Newton's method on the plane across the path."""
+    x, p = family.moved(place.x, length * place.along), place.p + length * place.onward
+    slope, row = family.slope(x, p), place.along / len(x)
+    last = np.inf
+    for rounds in range(1, ROUNDS + 1):
+        short = length - row @ (x - place.x) - place.onward * (p - place.p)
+        step, more = family.linear(x, p).bordered(slope, row, place.onward, family.residual(x, p), short)
+        x, p = family.moved(x, step), p + more
+        now = max(size(step), abs(more))
+        if now < EXACT:
+            return _directed(family, x, p, place.along, place.onward), rounds
+        if not now < max(0.5 * last, 1e-3):
+            break
+        last = now
+    raise NotAtRest("Newton's method does not converge across the path")
+
+
+def _directed(family: Family, x: Array, p: float, along: Array, onward: float) -> Place:
+    """The place with its direction, on the side of the one that led there."""
+    slope, row = family.slope(x, p), along / len(x)
+    d, e = family.linear(x, p).bordered(slope, row, onward, np.zeros_like(x), 1.0)
+    length = float(np.sqrt(d @ d / len(x) + e * e))
+    return Place(x, p, d / length, e / length)
