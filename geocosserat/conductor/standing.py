@@ -28,6 +28,9 @@ from geocosserat.statics.system import System
 STRAYS = 1e-2
 """A motion that moves an end from where it is held by more than this, relative to the rest, is not one of the rod's."""
 
+SAME = 1e-6
+"""Difference, relative to the whole, below which two states are one."""
+
 
 @dataclass(frozen=True, eq=False)
 class Standing:
@@ -49,6 +52,23 @@ class Standing:
         growth, motions = linear.spectrum(self.rate)
         kept = [i for i in range(len(growth)) if not self._strays(x, motions[:, i])]
         return growth[kept], motions[:, kept]
+
+    def energy(self, x: Array) -> float:
+        return self.kernel.observe(0.0, self.system.state(x))[2]
+
+    def same(self, x: Array, y: Array) -> bool:
+        """Whether two states of rest are one: in the same place, or one turned into the other without resistance."""
+        length = self.scene.model.length
+        apart = np.linalg.norm(self.poses(x).position - self.poses(y).position, axis=1).max()
+        if apart < SAME * length:
+            return True
+        one, other = self.energy(x), self.energy(y)
+        if abs(one - other) > SAME * max(abs(one), abs(other)):
+            return False
+        growth = [self.spectrum(self.system.linear(z), z)[0] for z in (x, y)]
+        if any(np.abs(g).min() > SAME * self.rate for g in growth):
+            return False  # nothing turns without resistance
+        return bool(np.abs(growth[0][:3] - growth[1][:3]).max() < 1e3 * SAME * self.rate)
 
     def displaced(self, x: Array, motion: Array) -> Array:
         """(nodes, space) how the nodes move with a motion (n,), complex as it is; per unit of it."""

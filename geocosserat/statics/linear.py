@@ -12,7 +12,7 @@ from geocosserat.kernel.contract import Array
 
 Complex = NDArray[np.complex128]
 
-SINGULAR = 1e-13
+SINGULAR = 1e-11
 """Reciprocal condition number below which equations leave motions open; of all solutions the smallest is taken."""
 
 FASTEST = 1e-12
@@ -94,5 +94,5 @@ def _solved(A: Array, b: Array) -> Array:
     if not failed and lapack.dgecon(lu, np.abs(A).sum(axis=0).max())[0] > SINGULAR:
         x: Array = lapack.dgetrs(lu, pivots, b)[0]
         return x
-    least: Array = lstsq(A, b, cond=10 * SINGULAR)[0]
+    least: Array = lstsq(A, b, cond=SINGULAR)[0]
     return least

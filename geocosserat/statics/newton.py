@@ -1,5 +1,6 @@
 """How a rod is brought to rest: by Newton's method, or by letting it relax in ever longer steps."""
 
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +16,10 @@ SMALL, ROUND_OFF = 1e-8, 1e-14
 """Steps below the first are taken as they come; below the second there is nothing left to do."""
 
 SHORTEST = 1e-4
+
+SLOWEST = 1e-2
+"""Rate of the longest steps of relaxation, relative to that at which the rod relaxes: a rod that nothing keeps from
+turning as a whole drifts by as much of its imbalance as one over it."""
 
 
 class NotAtRest(Exception):
@@ -55,13 +60,14 @@ def newton(system: System, x: Array, most: int = 50) -> Rest:
         now = size(step)
         if now < ROUND_OFF or (now < SMALL and now > 0.1 * last):
             return Rest(x, linear, now, rounds)
-        x = system.moved(x, step) if now < SMALL else _cut(system, x, linear, step, now)
+        x = system.moved(x, step) if now < SMALL else _cut(system, x, linear, step)
         last = now
     raise NotAtRest(f"Newton's method still takes steps of {last:.1g} after {most} rounds")
 
 
-def _cut(system: System, x: Array, linear: Linear, step: Array, length: float) -> Array:
+def _cut(system: System, x: Array, linear: Linear, step: Array) -> Array:
     """x after as much of the step as brings it nearer to rest."""
+    length = size(step)
     part = min(1.0, REACH / length)
     while part > SHORTEST:
         trial = system.moved(x, part * step)
@@ -75,7 +81,7 @@ def _cut(system: System, x: Array, linear: Linear, step: Array, length: float) -
     raise NotAtRest("no step of Newton's method brings the rod nearer to rest")
 
 
-def relax(system: System, x: Array, rate: float, most: int = 400) -> Rest:
+def relax(system: System, x: Array, rate: float, most: int = 150) -> Rest:
     """The state of rest that the rod settles to from x: implicit Euler steps, ever longer ones, then Newton's method.
 
     rate: about how fast it relaxes (1 / time).
@@ -86,8 +92,6 @@ def relax(system: System, x: Array, rate: float, most: int = 400) -> Rest:
     for _ in range(most):
         linear, f = system.linear(x), system.residual(x)
         try:
-            if size(linear.step(f)) < 1e-3 and now < rate:
-                return newton(system, x)
             step = linear.step(f, now)
             while size(step) > 0.3:
                 now *= 4.0
@@ -95,5 +99,8 @@ def relax(system: System, x: Array, rate: float, most: int = 400) -> Rest:
         except np.linalg.LinAlgError as error:
             raise NotAtRest(str(error)) from error
         x = system.moved(x, step)
-        now *= 0.4
+        if size(step) < 1e-3 and now <= SLOWEST * rate:
+            with suppress(NotAtRest):
+                return newton(system, x)
+        now = max(0.4 * now, SLOWEST * rate)
     raise NotAtRest(f"the rod does not settle in {most} steps")

@@ -69,46 +69,53 @@ class Eased:
         return self.system.moved(x, step)
 
 
-def follow(family: Family, x: Array, p: float = 0.0, to: float = 1.0, most: int = 2000) -> Iterator[Place]:
-    """The path of states of rest from (x, p), the first of them, until p passes `to` or comes back to where it began.
+def begin(family: Family, x: Array, p: float, sign: float) -> Place:
+    """The place of a state of rest, from which p grows (sign 1) or falls (-1)."""
+    return _directed(family, x, p, np.zeros_like(x), sign)
+
+
+def follow(family: Family, place: Place, low: float = 0.0, high: float = 1.0, most: int = 1000) -> Iterator[Place]:
+    """The path of states of rest from a place on, without that one, until p leaves the interval from `low` to `high`.
 
     Raises NotAtRest if it cannot be followed further.
     """
-    begin, sign = p, float(np.sign(to - p))
-    place = _directed(family, x, p, np.zeros_like(x), sign)
-    yield place
     length = FIRST
     for _ in range(most):
         try:
-            found, rounds = _next(family, place, length)
-        except (NotAtRest, np.linalg.LinAlgError) as error:
+            place, rounds = advance(family, place, length)
+        except NotAtRest as error:
             length /= 2
             if length < SHORTEST:
                 raise NotAtRest(f"the path of states ends at {place.p:.6g} of the interval: {error}") from error
             continue
-        place = found
         yield place
-        if sign * (place.p - to) >= 0 or sign * (place.p - begin) < 0:
+        if not low < place.p < high:
             return
         length = min(LONGEST, length * (1.5 if rounds <= 3 else 0.7 if rounds > 5 else 1.0))
     raise NotAtRest(f"the path of states is longer than {most} steps")
 
 
-def _next(family: Family, place: Place, length: float) -> tuple[Place, int]:
-    """The place a step further, and after how many rounds of Newton's method on the plane across the path."""
+def advance(family: Family, place: Place, length: float) -> tuple[Place, int]:
+    """The place so much further, and after how many rounds of Newton's method on the plane across the path.
+
+    Raises NotAtRest if it does not converge there.
+    """
     x, p = family.moved(place.x, length * place.along), place.p + length * place.onward
-    slope, row = family.slope(x, p), place.along / len(x)
-    last = np.inf
-    for rounds in range(1, ROUNDS + 1):
-        short = length - row @ (x - place.x) - place.onward * (p - place.p)
-        step, more = family.linear(x, p).bordered(slope, row, place.onward, family.residual(x, p), short)
-        x, p = family.moved(x, step), p + more
-        now = max(size(step), abs(more))
-        if now < EXACT:
-            return _directed(family, x, p, place.along, place.onward), rounds
-        if not now < max(0.5 * last, 1e-3):
-            break
-        last = now
+    row, last = place.along / len(x), np.inf
+    try:
+        slope = family.slope(x, p)
+        for rounds in range(1, ROUNDS + 1):
+            short = length - row @ (x - place.x) - place.onward * (p - place.p)
+            step, more = family.linear(x, p).bordered(slope, row, place.onward, family.residual(x, p), short)
+            x, p = family.moved(x, step), p + more
+            now = max(size(step), abs(more))
+            if now < EXACT:
+                return _directed(family, x, p, place.along, place.onward), rounds
+            if not now < max(0.5 * last, 1e-3):
+                break
+            last = now
+    except np.linalg.LinAlgError as error:
+        raise NotAtRest(str(error)) from error
     raise NotAtRest("Newton's method does not converge across the path")
 
 
