@@ -137,8 +137,9 @@ def check_standing(scene: Scene) -> None:
         )
 
 
-def stand(scene: Scene, size: tuple[int, int], kernel_text: Callable[[RodStructure], KernelText], backend: str) -> Standing:
-    """The rod of a scene on a mesh of (elements, degree).
+def stand(scene: Scene, size: tuple[int, int], kernel_text: Callable[[RodStructure], KernelText]) -> Standing:
+    """The rod of a scene on a mesh of (elements, degree), on numpy unless the scene wants C: few states are looked at,
+    and nothing has to be compiled for them.
 
     Raises InputError if the scene turns for ever in what it sees of the world.
     """
@@ -152,7 +153,7 @@ def stand(scene: Scene, size: tuple[int, int], kernel_text: Callable[[RodStructu
             key="ends",
         )
     text = kernel_text(structure)
-    kernel = load(text, rod, backend)
+    kernel = load(text, rod, "c" if scene.run.backend == "c" else "numpy")
     state = consistent(kernel, 0.0, rod.state)
     kept, around = _mattering(rod)
     scale = tolerances(rod, 1.0, None, unit_of_energy(scene, rod, kernel))[kept]

@@ -11,10 +11,9 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from geocosserat.discretisation.cells import POINTS, POWERS, Array, Twist, solved
-from geocosserat.discretisation.quaternions import of_unit_norm, product, turn
+from geocosserat.discretisation.quaternions import of_rotation, of_unit_norm, product, turn
 from geocosserat.model.errors import InputError
 from geocosserat.model.expressions import Expression, evaluate, switch_times
 
@@ -52,7 +51,7 @@ class Course:
 
     def placed(self, position: Array, rotation: Array, angle: Array | None = None) -> "Course":
         """The course of an end whose start has this pose, instead of relative to it."""
-        turned = [float(angle)] if angle is not None else Rotation.from_matrix(rotation).as_quat(scalar_first=True)
+        turned = [float(angle)] if angle is not None else of_rotation(rotation)
         start = np.concatenate([position, turned])[:, None]
         series = np.moveaxis(self.powers, -1, 0)[..., ::-1]
         return Course(self.edges, np.moveaxis(_moved(start, series)[..., ::-1], 0, -1))

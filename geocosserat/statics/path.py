@@ -52,10 +52,6 @@ class Eased:
     system: System
     held: Array
 
-    @classmethod
-    def at(cls, system: System) -> "Eased":
-        return cls(system, system.residual(system.x))
-
     def residual(self, x: Array, p: float) -> Array:
         return self.system.residual(x) - (1.0 - p) * self.held
 

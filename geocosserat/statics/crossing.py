@@ -1,0 +1,111 @@
+"""Where on a path of states of rest small motions begin to grow."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from scipy.optimize import toms748
+
+from geocosserat.kernel.contract import Array
+from geocosserat.statics.linear import Complex
+from geocosserat.statics.newton import NotAtRest
+from geocosserat.statics.path import Family, Place, advance, begin, follow
+
+EXACT = 1e-13
+"""To which a crossing is found along the path, in units of its length."""
+
+OSCILLATES = 1e-6
+"""Frequency relative to the rate of the rod above which a motion is an oscillation."""
+
+Spectrum = Callable[[Place], tuple[Complex, Complex]]
+
+
+@dataclass(frozen=True, eq=False)
+class Spot:
+    """A place, the growth rates there, the fastest growing first, and the motion that belongs to the first."""
+
+    place: Place
+    growth: Complex
+    motion: Array
+
+    @property
+    def leading(self) -> float:
+        return float(self.growth[0].real)
+
+
+@dataclass(frozen=True, eq=False)
+class Crossing:
+    """Where the leading rate passes zero. gains: it becomes positive. frequency (1 / time, radians): 0 of a divergence.
+    fold: the path turns back there."""
+
+    spot: Spot
+    gains: bool
+    frequency: float
+    fold: bool
+
+    @property
+    def kind(self) -> str:
+        return "flutter" if self.frequency else "divergence"
+
+
+class Looked:
+    """A family looked at: the growth rates at its places. neutral: how many of them vanish along the whole path, by
+    motions that nothing resists; they are left out. rate: about how fast the rod relaxes (1 / time)."""
+
+    def __init__(self, family: Family, spectrum: Spectrum, rate: float, neutral: int = 0) -> None:
+        self.family, self.spectrum, self.rate, self.neutral = family, spectrum, rate, neutral
+
+    def at(self, place: Place) -> Spot:
+        growth, motions = self.spectrum(place)
+        kept = np.sort(np.argsort(np.abs(growth), kind="stable")[self.neutral :])
+        return Spot(place, growth[kept], motions[:, kept[0]])
+
+    def path(self, x: Array, p: float, sign: float = 1.0, low: float = 0.0, high: float = 1.0) -> Iterator[Spot]:
+        """The path from a state of rest on, and the rates along it.
+
+        Raises NotAtRest where it cannot be followed.
+        """
+        place = begin(self.family, x, p, sign)
+        yield self.at(place)
+        yield from self.switched(place, low, high)
+
+    def switched(self, place: Place, low: float = 0.0, high: float = 1.0) -> Iterator[Spot]:
+        """The same from a place with its direction, without that one."""
+        for next_place in follow(self.family, place, low, high):
+            yield self.at(next_place)
+
+    def crossings(self, spots: list[Spot]) -> Iterator[Crossing]:
+        """Where the leading rate changes its sign between neighbours."""
+        for one, other in pairwise(spots):
+            if (one.leading > 0) != (other.leading > 0):
+                yield self._between(one, other)
+
+    def _between(self, one: Spot, other: Spot) -> Crossing:
+        length = float(one.place.along @ (other.place.x - one.place.x) / len(one.place.x))
+        length += one.place.onward * (other.place.p - one.place.p)
+        reached: dict[float, Spot] = {0.0: one, length: other}
+
+        def leading(part: float) -> float:
+            if part not in reached:
+                reached[part] = self.at(advance(self.family, one.place, part)[0])
+            return reached[part].leading
+
+        root = toms748(leading, 0.0, length, xtol=EXACT, rtol=4 * np.finfo(float).eps)
+        spot = min(reached.values(), key=lambda spot: abs(spot.leading))
+        del root
+        frequency = abs(float(spot.growth[0].imag))
+        fold = (one.place.onward > 0) != (other.place.onward > 0)
+        oscillates = frequency > OSCILLATES * self.rate
+        return Crossing(spot, other.leading > 0, frequency if oscillates else 0.0, fold and not oscillates)
+
+
+def branches(crossing: Crossing) -> tuple[Place, Place]:
+    """Where the two paths set out that leave a divergence sideways."""
+    place, motion = crossing.spot.place, crossing.spot.motion.real
+    length = float(np.sqrt(motion @ motion / len(motion)))
+    one, other = (Place(place.x, place.p, sign * motion / length, 0.0) for sign in (1.0, -1.0))
+    return one, other
+
+
+__all__ = ["Crossing", "Looked", "NotAtRest", "Spot", "branches"]
