@@ -41,8 +41,8 @@ class NotReached(Exception):
 
 @dataclass(frozen=True)
 class Equilibrium:
-    """What `equilibrium` returns: the state of rest, a solution of one frame, and the small motions about it; the fields
-    of ``equilibrium --json`` as attributes. solutions: all states of rest that were found, if they were asked for."""
+    """What `equilibrium` returns: the state of rest, a solution of one frame, and the small motions about it; the
+    fields of ``equilibrium --json`` as attributes. solutions: all states of rest that were found, if asked for."""
 
     solution: Solution
     modes: Modes
@@ -105,7 +105,9 @@ def equilibrium(
     return found if folder is None else _written(found, folder)
 
 
-def at_rest(stander: Stander, accuracy: float, rates: float = np.inf) -> tuple[State | None, State]:
+def at_rest(
+    stander: Stander, accuracy: float, rates: float = np.inf, count: int = COUNT
+) -> tuple[State | None, State]:
     """The state of rest on the last two of ever finer meshes, where positions are as accurate relative to the length,
     and the leading growth rates relative to each.
 
@@ -115,9 +117,9 @@ def at_rest(stander: Stander, accuracy: float, rates: float = np.inf) -> tuple[S
     last: State | None = None
     for state in stander.states():
         coarse, last = last, state
-        if state.estimated is not None and state.estimated <= max(accuracy, ROUND_OFF):
-            if rates == np.inf or modes_of(coarse, state).errors.max(initial=0.0) <= rates:
-                break
+        settled = state.estimated is not None and state.estimated <= max(accuracy, ROUND_OFF)
+        if settled and (rates == np.inf or modes_of(coarse, state, count).errors.max(initial=0.0) <= rates):
+            break
     assert last is not None
     return coarse, last
 

@@ -70,7 +70,7 @@ class Standing:
             return False  # nothing turns without resistance
         return bool(np.abs(growth[0][:3] - growth[1][:3]).max() < 1e3 * SAME * self.rate)
 
-    def displaced(self, x: Array, motion: Array) -> Array:
+    def displaced(self, x: Array, motion: Complex) -> Complex:
         """(nodes, space) how the nodes move with a motion (n,), complex as it is; per unit of it."""
         h = 1e-6
         parts = []
@@ -79,7 +79,7 @@ class Standing:
             parts.append((there - here) / (2 * h))
         return parts[0] + 1j * parts[1]
 
-    def _strays(self, x: Array, motion: Array) -> bool:
+    def _strays(self, x: Array, motion: Complex) -> bool:
         structure = self.rod.structure
         far = structure.right if structure.base == "left" else structure.left
         if far.kind == "free" or structure.joined:

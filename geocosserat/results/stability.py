@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
 import numpy as np
@@ -22,9 +22,9 @@ class Modes:
     """Small motions about a state of rest.
 
     growth (k,): rates, 1 / time, the fastest growing first: motions go as exp(growth t). shapes (k, nodes, space): how
-    the nodes move, lengths, the largest of each motion 1; of a growth rate that is not real, in complex numbers. errors (k,): by
-    how much they differ from those of another mesh, relative to each; infinite if there is none. neutral: how many vanish, for nothing resists
-    those motions. unstable: how many grow.
+    the nodes move, lengths, the largest of each motion 1; of a growth rate that is not real, in complex numbers. errors
+    (k,): by how much the rates differ from those of another mesh, relative to each; infinite if there is none. neutral:
+    how many vanish, for nothing resists those motions. unstable: how many grow.
     """
 
     growth: Complex
@@ -115,6 +115,7 @@ class Stability:
     solution: Solution
     residual: float
     modes: Modes
+    scene: str | None
     followed: Followed | None = None
     map: Map | None = None
     files: Sequence[str] = field(default=())
@@ -122,7 +123,7 @@ class Stability:
     @property
     def fields(self) -> dict[str, Any]:
         """In plain JSON types."""
-        return {**rest_fields(self.solution, self.residual, self.modes, self.files), **self._over()}
+        return {**rest_fields(self.solution, self.residual, self.modes, self.files, self.scene), **self._over()}
 
     def _over(self) -> dict[str, Any]:
         found: dict[str, Any] = {}
@@ -134,7 +135,7 @@ class Stability:
                 "critical": None if critical is None else critical.fields,
                 "crossings": [crossing.fields for crossing in self.followed.crossings],
                 "branches": [
-                    [{"value": p.value, "growth": p.growth, "frequency": p.frequency, "tip": list(p.tip)} for p in branch]
+                    [asdict(point) for point in branch]
                     for branch in self.followed.branches
                 ],
                 "reason": self.followed.reason,

@@ -9,7 +9,6 @@ from scipy.optimize import toms748
 
 from geocosserat.kernel.contract import Array
 from geocosserat.statics.linear import Complex
-from geocosserat.statics.newton import NotAtRest
 from geocosserat.statics.path import Family, Place, advance, begin, follow
 
 EXACT = 1e-13
@@ -18,28 +17,33 @@ EXACT = 1e-13
 OSCILLATES = 1e-6
 """Frequency relative to the rate of the rod above which a motion is an oscillation."""
 
+SAME = 1e-6
+"""Crossings nearer than this, of the interval, are those of a pair."""
+
 Spectrum = Callable[[Place], tuple[Complex, Complex]]
 
 
 @dataclass(frozen=True, eq=False)
 class Spot:
-    """A place, the growth rates there, the fastest growing first, and the motion that belongs to the first."""
+    """A place, the growth rates there, the fastest growing first, and their motions (n, k)."""
 
     place: Place
     growth: Complex
-    motion: Array
+    motions: Complex
 
     @property
-    def leading(self) -> float:
-        return float(self.growth[0].real)
+    def unstable(self) -> int:
+        """How many motions grow."""
+        return int((self.growth.real > 0).sum())
 
 
 @dataclass(frozen=True, eq=False)
 class Crossing:
-    """Where the leading rate passes zero. gains: it becomes positive. frequency (1 / time, radians): 0 of a divergence.
-    fold: the path turns back there."""
+    """Where a growth rate passes zero, the one of that number (0: the leading one). gains: it becomes positive.
+    frequency (1 / time, radians): 0 of a divergence. fold: the path turns back there."""
 
     spot: Spot
+    number: int
     gains: bool
     frequency: float
     fold: bool
@@ -59,7 +63,7 @@ class Looked:
     def at(self, place: Place) -> Spot:
         growth, motions = self.spectrum(place)
         kept = np.sort(np.argsort(np.abs(growth), kind="stable")[self.neutral :])
-        return Spot(place, growth[kept], motions[:, kept[0]])
+        return Spot(place, growth[kept], motions[:, kept])
 
     def path(self, x: Array, p: float, sign: float = 1.0, low: float = 0.0, high: float = 1.0) -> Iterator[Spot]:
         """The path from a state of rest on, and the rates along it.
@@ -76,36 +80,43 @@ class Looked:
             yield self.at(next_place)
 
     def crossings(self, spots: list[Spot]) -> Iterator[Crossing]:
-        """Where the leading rate changes its sign between neighbours."""
+        """Where growth rates change their sign between neighbours; a pair that oscillates is one."""
         for one, other in pairwise(spots):
-            if (one.leading > 0) != (other.leading > 0):
-                yield self._between(one, other)
+            numbers = list(range(*sorted((one.unstable, other.unstable))))
+            if one.unstable > other.unstable:
+                numbers.reverse()
+            found: list[Crossing] = []
+            for number in numbers:
+                crossing = self._between(one, other, number)
+                pair = found and found[-1].frequency and crossing.frequency
+                if not (pair and abs(found[-1].spot.place.p - crossing.spot.place.p) < SAME):
+                    found.append(crossing)
+            yield from found
 
-    def _between(self, one: Spot, other: Spot) -> Crossing:
+    def _between(self, one: Spot, other: Spot, number: int) -> Crossing:
+        """The crossing of the rate of that number, bracketed along the path."""
         length = float(one.place.along @ (other.place.x - one.place.x) / len(one.place.x))
         length += one.place.onward * (other.place.p - one.place.p)
         reached: dict[float, Spot] = {0.0: one, length: other}
 
-        def leading(part: float) -> float:
+        def rate(part: float) -> float:
             if part not in reached:
                 reached[part] = self.at(advance(self.family, one.place, part)[0])
-            return reached[part].leading
+            return float(reached[part].growth[number].real)
 
-        root = toms748(leading, 0.0, length, xtol=EXACT, rtol=4 * np.finfo(float).eps)
-        spot = min(reached.values(), key=lambda spot: abs(spot.leading))
-        del root
-        frequency = abs(float(spot.growth[0].imag))
-        fold = (one.place.onward > 0) != (other.place.onward > 0)
+        toms748(rate, 0.0, length, xtol=EXACT, rtol=4 * np.finfo(float).eps)
+        spot = min(reached.values(), key=lambda spot: abs(spot.growth[number].real))
+        frequency = abs(float(spot.growth[number].imag))
         oscillates = frequency > OSCILLATES * self.rate
-        return Crossing(spot, other.leading > 0, frequency if oscillates else 0.0, fold and not oscillates)
+        fold = (one.place.onward > 0) != (other.place.onward > 0)
+        return Crossing(
+            spot, number, other.unstable > one.unstable, frequency if oscillates else 0.0, fold and not oscillates
+        )
 
 
 def branches(crossing: Crossing) -> tuple[Place, Place]:
     """Where the two paths set out that leave a divergence sideways."""
-    place, motion = crossing.spot.place, crossing.spot.motion.real
+    place, motion = crossing.spot.place, crossing.spot.motions[:, crossing.number].real
     length = float(np.sqrt(motion @ motion / len(motion)))
     one, other = (Place(place.x, place.p, sign * motion / length, 0.0) for sign in (1.0, -1.0))
     return one, other
-
-
-__all__ = ["Crossing", "Looked", "NotAtRest", "Spot", "branches"]

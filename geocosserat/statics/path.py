@@ -15,7 +15,7 @@ from geocosserat.statics.linear import Linear
 from geocosserat.statics.newton import NotAtRest, size
 from geocosserat.statics.system import System
 
-FIRST, LONGEST, SHORTEST = 0.02, 0.05, 1e-7
+FIRST, LONGEST, SHORTEST = 0.02, 0.08, 1e-7
 """Steps along the curve, in units of the interval of p and of natural sizes together."""
 
 EXACT, ROUNDS = 1e-9, 8
@@ -78,15 +78,17 @@ def follow(family: Family, place: Place, low: float = 0.0, high: float = 1.0, mo
     length = FIRST
     for _ in range(most):
         try:
-            place, rounds = advance(family, place, length)
+            further, rounds = advance(family, place, length)
+            if not low <= further.p <= high:  # the last step ends at the end
+                yield _landed(family, place, further, min(max(further.p, low), high))
+                return
         except NotAtRest as error:
             length /= 2
             if length < SHORTEST:
                 raise NotAtRest(f"the path of states ends at {place.p:.6g} of the interval: {error}") from error
             continue
+        place = further
         yield place
-        if not low < place.p < high:
-            return
         length = min(LONGEST, length * (1.5 if rounds <= 3 else 0.7 if rounds > 5 else 1.0))
     raise NotAtRest(f"the path of states is longer than {most} steps")
 
@@ -101,8 +103,9 @@ def advance(family: Family, place: Place, length: float) -> tuple[Place, int]:
     try:
         slope = family.slope(x, p)
         for rounds in range(1, ROUNDS + 1):
-            short = length - row @ (x - place.x) - place.onward * (p - place.p)
-            step, more = family.linear(x, p).bordered(slope, row, place.onward, family.residual(x, p), short)
+            short = length - float(row @ (x - place.x)) - place.onward * (p - place.p)
+            residual = family.residual(x, p)
+            step, more = family.linear(x, p).bordered(slope, row, place.onward, residual, short)
             x, p = family.moved(x, step), p + more
             now = max(size(step), abs(more))
             if now < EXACT:
@@ -113,6 +116,18 @@ def advance(family: Family, place: Place, length: float) -> tuple[Place, int]:
     except np.linalg.LinAlgError as error:
         raise NotAtRest(str(error)) from error
     raise NotAtRest("Newton's method does not converge across the path")
+
+
+def _landed(family: Family, one: Place, other: Place, p: float) -> Place:
+    """The place at p between two places."""
+    part = (p - one.p) / (other.p - one.p)
+    x = family.moved(one.x, part * (other.x - one.x))
+    for _ in range(ROUNDS):
+        step = family.linear(x, p).step(family.residual(x, p))
+        x = family.moved(x, step)
+        if size(step) < EXACT:
+            return _directed(family, x, p, one.along, one.onward)
+    raise NotAtRest("Newton's method does not converge at the end of the interval")
 
 
 def _directed(family: Family, x: Array, p: float, along: Array, onward: float) -> Place:

@@ -73,7 +73,7 @@ def _deflated(system: System, x: Array, known: list[Array], most: int = 30) -> R
         # how much stronger the repulsion gets along the step, relative to itself
         gaps = [x - k for k in known]
         squares = [max(float(g @ g), NEAR**2) for g in gaps]
-        stronger = sum(-2 * (g @ step) / (s * (1 + s)) for g, s in zip(gaps, squares, strict=True))
+        stronger = sum(-2 * float(g @ step) / (s * (1 + s)) for g, s in zip(gaps, squares, strict=True))
         step = step / (1 - stronger) if abs(1 - stronger) > 1e-12 else step
         now = size(step)
         x = system.moved(x, step * min(1.0, REACH / now))
