@@ -1,26 +1,29 @@
 """The rod of a scene as a system of equations for where it rests."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
+from geocosserat.conductor.held import held_spectrum
 from geocosserat.conductor.simulate import tolerances, unit_of_energy
 from geocosserat.discretisation.mesh import Array, Mesh
 from geocosserat.discretisation.pose import Poses
 from geocosserat.discretisation.sampling import friction_of, left_of_friction, slowest
 from geocosserat.discretisation.semidiscrete import SemiDiscrete, discretise
-from geocosserat.discretisation.structure import RodStructure
+from geocosserat.discretisation.structure import RodStructure, present
+from geocosserat.discretisation.structuring import structure_of
 from geocosserat.kernel.library import KernelText
 from geocosserat.kernel.load import load
 from geocosserat.kernel.native import NativeRod
 from geocosserat.kernel.pure import NumpyRod
 from geocosserat.model.errors import InputError
-from geocosserat.model.expressions import symbols
+from geocosserat.model.expressions import Number, evaluate, symbols
 from geocosserat.model.formulas import formulas
 from geocosserat.model.records import Scene
+from geocosserat.model.seen import seen
 from geocosserat.solver.consistent import consistent
 from geocosserat.statics.linear import Complex, Linear
 from geocosserat.statics.system import System
@@ -34,7 +37,11 @@ SAME = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Standing:
-    """A rod on a mesh, its kernel, the equations of its rest, and about how fast it relaxes (1 / time)."""
+    """A rod on a mesh, its kernel, the equations of its rest, and about how fast it relaxes (1 / time).
+
+    drag (nodes, d, d): of a rod that does not move where it rests, its friction; the kernel has another one then, for
+    that of the rod has no part in where it rests.
+    """
 
     scene: Scene
     rod: SemiDiscrete
@@ -42,13 +49,15 @@ class Standing:
     text: KernelText
     system: System
     rate: float
+    drag: Array | None
 
     def poses(self, x: Array) -> Poses:
         return self.rod.poses(self.system.state(x))
 
     def spectrum(self, linear: Linear, x: Array) -> tuple[Complex, Complex]:
-        """Growth rates and motions as `Linear.spectrum`, of the rod alone: without those by which an end that is held
-        comes back to its place."""
+        """Growth rates and motions as `Linear.spectrum`, of the rod alone."""
+        if self.drag is not None:
+            return held_spectrum(self.rod, self.system, linear, x, self.drag, self.rate)
         growth, motions = linear.spectrum(self.rate)
         kept = [i for i in range(len(growth)) if not self._strays(x, motions[:, i])]
         return growth[kept], motions[:, kept]
@@ -143,7 +152,8 @@ def stand(scene: Scene, size: tuple[int, int], kernel_text: Callable[[RodStructu
 
     Raises InputError if the scene turns for ever in what it sees of the world.
     """
-    rod = discretise(scene, *size, anchored=True)
+    still = rests_still(scene)
+    rod = discretise(_plainly_dragged(scene) if still else scene, *size, anchored=True)
     structure = rod.structure
     if structure.prescribed and structure.sight != "nothing":
         raise InputError(
@@ -157,9 +167,38 @@ def stand(scene: Scene, size: tuple[int, int], kernel_text: Callable[[RodStructu
     state = consistent(kernel, 0.0, rod.state)
     kept, around = _mattering(rod)
     scale = tolerances(rod, 1.0, None, unit_of_energy(scene, rod, kernel))[kept]
-    system = System(kernel, state, kept, scale, around)
-    rate = slowest(scene.model, friction_of(scene.model, rod.mesh, left_of_friction(scene.run)))
-    return Standing(scene, rod, kernel, text, system, rate)
+    friction = friction_of(scene.model, rod.mesh, 0.0 if still else left_of_friction(scene.run))
+    return Standing(
+        scene=scene,
+        rod=rod,
+        kernel=kernel,
+        text=text,
+        system=System(kernel, state, kept, scale, around),
+        rate=slowest(scene.model, friction),
+        drag=friction if still else None,
+    )
+
+
+def rests_still(scene: Scene) -> bool:
+    """Whether the rod cannot move where it rests, so that friction does not matter there; and its stress does not
+    answer to rates."""
+    model, frame = scene.model, seen(scene.model.group.space)
+    kinds = {model.left.kind, model.right.kind}
+    held = "driven" not in kinds and ("clamped" in kinds or kinds == {"pinned"})
+    flows = any(present((*velocity, *spin)) for velocity, spin in (effect.medium(frame) for effect in model.effects))
+    viscous = any(structure_of(model).viscous)
+    return held and not flows and not viscous
+
+
+def _plainly_dragged(scene: Scene) -> Scene:
+    """The scene with the friction of a rod whose motions are all alike."""
+    model, length = scene.model, scene.model.length
+    middle = {**model.parameters, "u": length / 2}
+    across = float(evaluate(model.friction[0][0], middle))
+    group = model.group
+    sizes = [across] * group.translations + [across * length**2] * group.rotations
+    friction = tuple(tuple(Number(x if i == j else 0.0) for j in range(len(sizes))) for i, x in enumerate(sizes))
+    return replace(scene, model=replace(model, friction=friction))
 
 
 def _mattering(rod: SemiDiscrete) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:

@@ -1,4 +1,4 @@
-"""Linear algebra of a rod near a state: steps towards rest, and how small motions grow or decay."""
+"""Linear algebra of a rod near a state: steps towards rest, along a path, and the growth of small motions."""
 
 from __future__ import annotations
 
@@ -6,18 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import eig, eigvals, lapack, lstsq, solve
+from scipy.linalg import lapack, lstsq
 
 from geocosserat.kernel.contract import Array
-
-Complex = NDArray[np.complex128]
+from geocosserat.statics.pencil import Complex, growth
 
 SINGULAR = 1e-11
 """Reciprocal condition number below which equations leave motions open; of all solutions the smallest is taken."""
-
-FASTEST = 1e-12
-"""Slowest rate relative to those rates that shift and inversion still tells from infinite ones."""
-
 
 @dataclass(frozen=True, eq=False)
 class Linear:
@@ -44,40 +39,10 @@ class Linear:
         return B @ found[:-1], float(found[-1])
 
     def spectrum(self, rate: float) -> tuple[Complex, Complex]:
-        """Growth rates (k,) of small motions, the fastest growing first, and the motions (n, k), of greatest entry 1.
-
-        rate: about how slow the slowest motion is. Rates are as exact as round-off allows near it, since they are found
-        from the inverse; those too fast for that are found without it, but only if they grow.
-        """
-        A = rate * np.diag(self.moves.astype(float)) - self.J
-        rows = np.abs(A).max(axis=1)
-        S = solve(A / rows[:, None], np.eye(len(A))[:, self.moves] / rows[:, None])
-        mu, vectors = eig(S[self.moves])
-        slow = np.abs(mu) > FASTEST * np.abs(mu).max()
-        growth = rate - 1.0 / mu[slow]
-        motions = S @ vectors[:, slow]
-        fast, theirs = self._fast_growth(np.abs(growth).max())
-        growth, motions = np.concatenate([growth, fast]), np.concatenate([motions, theirs], axis=1)
-        order = np.lexsort((-growth.imag, -growth.real))
-        motions = self.basis @ motions[:, order]
-        largest = motions[np.abs(motions).argmax(axis=0), np.arange(motions.shape[1])]
-        return growth[order], motions / largest
-
-    def _fast_growth(self, beyond: float) -> tuple[Complex, Complex]:
-        """Rates of growth above `beyond` and their motions (m, k)."""
-        m, fixed = self.moves, ~self.moves
-        J = self.J[np.ix_(m, m)]
-        follow = np.zeros((int(fixed.sum()), int(m.sum())))
-        if fixed.any():
-            follow = -solve(self.J[np.ix_(fixed, fixed)], self.J[np.ix_(fixed, m)])
-            J = J + self.J[np.ix_(m, fixed)] @ follow
-        if eigvals(J).real.max() <= beyond:
-            return np.empty(0, dtype=complex), np.empty((len(m), 0), dtype=complex)
-        growth, vectors = eig(J)
-        chosen = growth.real > beyond
-        motions = np.empty((len(m), int(chosen.sum())), dtype=complex)
-        motions[m], motions[fixed] = vectors[:, chosen], follow @ vectors[:, chosen]
-        return growth[chosen], motions
+        """Growth rates (k,) of small motions, the fastest growing first, and the motions (n, k). rate: about that of the
+        slowest one."""
+        found, vectors = growth(self.J, np.diag(self.moves.astype(float)), rate)
+        return found, self.basis @ vectors
 
 
 def _solved(A: Array, b: Array) -> Array:
