@@ -4,13 +4,16 @@ The unknowns are the motions u of the nodes and, of frozen modes, the changes of
 they are held, frozen modes change nothing, and a friction may be zero: it makes the matrix of drag singular, no more.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from geocosserat.discretisation.mesh import Array
 from geocosserat.discretisation.motions import strain_rates
 from geocosserat.discretisation.quaternions import spun
 from geocosserat.discretisation.semidiscrete import SemiDiscrete
-from geocosserat.statics.linear import Linear
+from geocosserat.kernel.native import NativeRod
+from geocosserat.kernel.pure import NumpyRod
 from geocosserat.statics.pencil import Complex, growth
 from geocosserat.statics.system import System
 
@@ -18,36 +21,67 @@ SLACK = 1e-11
 """How much frozen modes yield between two held ends, in natural sizes, so that their stress is unique."""
 
 
-def held_spectrum(
-    rod: SemiDiscrete, system: System, linear: Linear, x: Array, drag: Array, rate: float
-) -> tuple[Complex, Complex]:
-    """Growth rates (k,) of small motions about the state of rest x, the fastest growing first, and the motions (n, k) in
-    its coordinates. drag (nodes, d, d): friction; rate: about that of the slowest motion."""
+@dataclass(frozen=True, eq=False)
+class Held:
+    """A rod that is held, with friction that is the same for all its motions; drag (nodes, d, d): its own. driven: it
+    has a clamp in place of an end that is driven."""
+
+    rod: SemiDiscrete
+    kernel: NativeRod | NumpyRod
+    system: System
+    drag: Array
+    driven: bool
+
+    def spectrum(self, x: Array, twist: Array, rate: float) -> tuple[Complex, Complex]:
+        """Growth rates (k,) of small motions about the state of rest x, the fastest growing first, and the motions
+        (n, k) in its coordinates. twist (nodes, d): how it moves as a whole; rate: about that of the slowest motion."""
+        rod, kernel, system, drag = self.rod, self.kernel, self.system, self.drag
+        linear = system.linear(x)
+        mesh, structure = rod.mesh, rod.structure
+        d, points = structure.group.dimension, mesh.elements * mesh.degree
+        frozen = np.repeat(structure.frozen, points)
+        state = system.state(x)
+        A = strain_rates(mesh, structure.group, rod.turn(state))
+        moving, free = _motions(rod)
+        # what twists of the nodes do to the coordinates, which is square: so it is known what the nodes do
+        makes = np.concatenate([A, _turns_of_base(rod, system, x)])
+        scaled, natural = linear.basis.T / system.scale, system.scale[:, None] * linear.basis
+        own, _, _ = kernel.observe(0.0, state)
+        changes = linear.J + scaled @ _of_geometry(rod, own, len(makes)) @ natural
+        twists = np.linalg.solve(scaled @ makes[:, moving], changes)[free[moving]]
+        forces = _inverse_mobility(rod)[free][:, None] * twists
+        # the coordinates, by motions of the nodes and changes of stress
+        stresses = np.zeros((len(makes), int(frozen.sum())))
+        stresses[np.flatnonzero(frozen), np.arange(stresses.shape[1])] = 1.0
+        by_motions = makes[:, free].copy()
+        by_motions[np.flatnonzero(frozen)] = 0.0
+        by = scaled @ np.concatenate([by_motions, stresses], axis=1)
+        K, M = np.zeros((by.shape[1], by.shape[1])), np.zeros((by.shape[1], by.shape[1]))
+        n = int(free.sum())
+        heavy = mesh.mass[:, None, None] * drag
+        K[:n] = forces @ by
+        K[:n, :n] -= _block_diagonal(heavy @ structure.group.ad(twist))[np.ix_(free, free)]
+        K[n:, :n] = A[frozen][:, free]
+        if structure.indeterminate:
+            K[n:, n:] = -SLACK * np.diag(1.0 / system.scale[: d * points][frozen])
+        M[:n, :n] = _block_diagonal(heavy)[np.ix_(free, free)]
+        found, z = growth(K, M, rate)
+        return found, linear.basis @ (by @ z)
+
+
+def _of_geometry(rod: SemiDiscrete, twist: Array, size: int) -> Array:
+    """(size, size) what the rates of the turn lose as the turn changes, for twists (d, nodes) that stay: ad_V of it."""
     mesh, structure = rod.mesh, rod.structure
-    d, points = structure.group.dimension, mesh.elements * mesh.degree
-    frozen = np.repeat(structure.frozen, points)
-    A = strain_rates(mesh, structure.group, rod.turn(system.state(x)))
-    moving, free = _motions(rod)
-    # what twists of the nodes do to the coordinates, which is square: so it is known what the nodes do
-    makes = np.concatenate([A, _turns_of_base(rod, system, x)])
-    scaled = linear.basis.T / system.scale
-    twists = np.linalg.solve(scaled @ makes[:, moving], linear.J)[free[moving]]
-    forces = _inverse_mobility(rod)[free][:, None] * twists
-    # the coordinates, by motions of the nodes and changes of stress
-    stresses = np.zeros((len(makes), int(frozen.sum())))
-    stresses[np.flatnonzero(frozen), np.arange(stresses.shape[1])] = 1.0
-    by_motions = makes[:, free].copy()
-    by_motions[np.flatnonzero(frozen)] = 0.0
-    by = scaled @ np.concatenate([by_motions, stresses], axis=1)
-    K, M = np.zeros((by.shape[1], by.shape[1])), np.zeros((by.shape[1], by.shape[1]))
-    n = int(free.sum())
-    K[:n] = forces @ by
-    K[n:, :n] = A[frozen][:, free]
-    if structure.indeterminate:
-        K[n:, n:] = -SLACK * np.diag(1.0 / system.scale[: d * points][frozen])
-    M[:n, :n] = _block_diagonal(mesh.mass[:, None, None] * drag)[np.ix_(free, free)]
-    found, z = growth(K, M, rate)
-    return found, linear.basis @ (by @ z)
+    n, p, d = mesh.elements, mesh.degree, structure.group.dimension
+    local = twist[:, np.arange(n)[:, None] * p + np.arange(p + 1)]
+    ad = structure.group.ad((local @ mesh.reference.values.T).reshape(d, n * p).T)
+    found = np.zeros((size, size))
+    points = np.arange(n * p)
+    for i in range(d):
+        for j in range(d):
+            if not structure.frozen[j]:
+                found[i * n * p + points, j * n * p + points] = ad[:, i, j]
+    return found
 
 
 def _motions(rod: SemiDiscrete) -> tuple[Array, Array]:

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
-from geocosserat.conductor.held import held_spectrum
+from geocosserat.conductor.held import Held
 from geocosserat.conductor.simulate import tolerances, unit_of_energy
 from geocosserat.discretisation.mesh import Array, Mesh
 from geocosserat.discretisation.pose import Poses
@@ -22,7 +22,7 @@ from geocosserat.kernel.pure import NumpyRod
 from geocosserat.model.errors import InputError
 from geocosserat.model.expressions import Number, evaluate, symbols
 from geocosserat.model.formulas import formulas
-from geocosserat.model.records import Scene
+from geocosserat.model.records import End, Scene
 from geocosserat.model.seen import seen
 from geocosserat.solver.consistent import consistent
 from geocosserat.statics.linear import Complex, Linear
@@ -39,8 +39,7 @@ SAME = 1e-6
 class Standing:
     """A rod on a mesh, its kernel, the equations of its rest, and about how fast it relaxes (1 / time).
 
-    drag (nodes, d, d): of a rod that does not move where it rests, its friction; the kernel has another one then, for
-    that of the rod has no part in where it rests.
+    held: how small motions of a rod grow that an end holds, or drives; None of one that nothing does.
     """
 
     scene: Scene
@@ -49,15 +48,16 @@ class Standing:
     text: KernelText
     system: System
     rate: float
-    drag: Array | None
+    held: Held | None
 
     def poses(self, x: Array) -> Poses:
         return self.rod.poses(self.system.state(x))
 
     def spectrum(self, linear: Linear, x: Array) -> tuple[Complex, Complex]:
         """Growth rates and motions as `Linear.spectrum`, of the rod alone."""
-        if self.drag is not None:
-            return held_spectrum(self.rod, self.system, linear, x, self.drag, self.rate)
+        if self.held is not None:
+            twist, _, _ = self.kernel.observe(0.0, self.system.state(x))
+            return self.held.spectrum(x, twist.T if self.held.driven else np.zeros_like(twist.T), self.rate)
         growth, motions = linear.spectrum(self.rate)
         kept = [i for i in range(len(growth)) if not self._strays(x, motions[:, i])]
         return growth[kept], motions[:, kept]
@@ -152,8 +152,9 @@ def stand(scene: Scene, size: tuple[int, int], kernel_text: Callable[[RodStructu
 
     Raises InputError if the scene turns for ever in what it sees of the world.
     """
-    still = rests_still(scene)
-    rod = discretise(_plainly_dragged(scene) if still else scene, *size, anchored=True)
+    held = _is_held(scene)
+    still = held and "driven" not in (scene.model.left.kind, scene.model.right.kind)
+    rod, text, kernel, system = _system(_plainly_dragged(scene) if still else scene, size, kernel_text)
     structure = rod.structure
     if structure.prescribed and structure.sight != "nothing":
         raise InputError(
@@ -162,39 +163,50 @@ def stand(scene: Scene, size: tuple[int, int], kernel_text: Callable[[RodStructu
             "use `run`: there is a periodic state at best",
             key="ends",
         )
-    text = kernel_text(structure)
+    friction = friction_of(scene.model, rod.mesh, 0.0 if held else left_of_friction(scene.run))
+    motions = None
+    if still:
+        motions = Held(rod, kernel, system, friction, driven=False)
+    elif held:
+        other, _, plain, its = _system(_plainly_dragged(_halted(scene)), size, kernel_text)
+        motions = Held(other, plain, its, friction, driven=True)
+    return Standing(scene, rod, kernel, text, system, slowest(scene.model, friction), motions)
+
+
+def _system(
+    scene: Scene, size: tuple[int, int], kernel_text: Callable[[RodStructure], KernelText]
+) -> tuple[SemiDiscrete, KernelText, NativeRod | NumpyRod, System]:
+    """The rod of a scene, its kernel, and the equations of its rest."""
+    rod = discretise(scene, *size, anchored=True)
+    text = kernel_text(rod.structure)
     kernel = load(text, rod, "c" if scene.run.backend == "c" else "numpy")
-    state = consistent(kernel, 0.0, rod.state)
     kept, around = _mattering(rod)
     scale = tolerances(rod, 1.0, None, unit_of_energy(scene, rod, kernel))[kept]
-    friction = friction_of(scene.model, rod.mesh, 0.0 if still else left_of_friction(scene.run))
-    return Standing(
-        scene=scene,
-        rod=rod,
-        kernel=kernel,
-        text=text,
-        system=System(kernel, state, kept, scale, around),
-        rate=slowest(scene.model, friction),
-        drag=friction if still else None,
-    )
+    return rod, text, kernel, System(kernel, consistent(kernel, 0.0, rod.state), kept, scale, around)
 
 
-def rests_still(scene: Scene) -> bool:
-    """Whether the rod cannot move where it rests, so that friction does not matter there; and its stress does not
-    answer to rates."""
+def _is_held(scene: Scene) -> bool:
+    """Whether it is known how the rod moves where it rests: not at all, or as its driven end does; and its stress does
+    not answer to rates."""
     model, frame = scene.model, seen(scene.model.group.space)
     kinds = {model.left.kind, model.right.kind}
-    held = "driven" not in kinds and ("clamped" in kinds or kinds == {"pinned"})
+    held = bool(kinds & {"clamped", "driven"}) or kinds == {"pinned"}
     flows = any(present((*velocity, *spin)) for velocity, spin in (effect.medium(frame) for effect in model.effects))
-    viscous = any(structure_of(model).viscous)
-    return held and not flows and not viscous
+    return held and not flows and not any(structure_of(model).viscous)
+
+
+def _halted(scene: Scene) -> Scene:
+    """The scene with its driven end clamped."""
+    model = scene.model
+    left, right = (End("clamped") if end.kind == "driven" else end for end in (model.left, model.right))
+    return replace(scene, model=replace(model, left=left, right=right))
 
 
 def _plainly_dragged(scene: Scene) -> Scene:
-    """The scene with the friction of a rod whose motions are all alike."""
+    """The scene with a friction that is the same for all motions of the rod: it has no part in where the rod rests, and
+    makes round-off small."""
     model, length = scene.model, scene.model.length
-    middle = {**model.parameters, "u": length / 2}
-    across = float(evaluate(model.friction[0][0], middle))
+    across = float(evaluate(model.friction[0][0], {**model.parameters, "u": length / 2}))
     group = model.group
     sizes = [across] * group.translations + [across * length**2] * group.rotations
     friction = tuple(tuple(Number(x if i == j else 0.0) for j in range(len(sizes))) for i, x in enumerate(sizes))
