@@ -7,6 +7,7 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
+from geocosserat.conductor.closed import Closed
 from geocosserat.conductor.held import Held
 from geocosserat.conductor.simulate import tolerances, unit_of_energy
 from geocosserat.discretisation.mesh import Array, Mesh
@@ -132,13 +133,6 @@ def check_standing(scene: Scene) -> None:
     model = scene.model
     if any("t" in symbols(e) for e in formulas(scene)):
         raise InputError("a scene that does not vary with t", "a formula of t", "put a number in its place", key="t")
-    if model.joined:
-        raise InputError(
-            "a rod with two ends",
-            "joined ends",
-            "clamp both of them at the same place instead",
-            key="ends.joined",
-        )
     kinds = {model.left.kind, model.right.kind}
     if "driven" in kinds and "free" not in kinds:
         raise InputError(
@@ -182,7 +176,8 @@ def _system(
     kernel = load(text, rod, "c" if scene.run.backend == "c" else "numpy")
     kept, around = _mattering(rod)
     scale = tolerances(rod, 1.0, None, unit_of_energy(scene, rod, kernel))[kept]
-    return rod, text, kernel, System(kernel, consistent(kernel, 0.0, rod.state), kept, scale, around)
+    closure = Closed(rod) if scene.model.joined else None
+    return rod, text, kernel, System(kernel, consistent(kernel, 0.0, rod.state), kept, scale, around, closure)
 
 
 def _is_held(scene: Scene) -> bool:

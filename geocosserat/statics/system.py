@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,13 +14,26 @@ from geocosserat.statics.linear import Linear
 Mask = NDArray[np.bool_]
 
 
+class Closure(Protocol):
+    """What closes a rod: how far it is from closed, and what of its rates says nothing, since it stays so."""
+
+    def gap(self, y: Array) -> Array:
+        """(k,) what is to vanish of a state."""
+
+    def slope(self, y: Array, kept: NDArray[np.intp]) -> Array:
+        """(k, n) how that changes with these entries."""
+
+    def lost(self, y: Array, kept: NDArray[np.intp]) -> Array:
+        """(n, k) by columns, combinations of the rates of these entries that are zero whatever the rod does."""
+
+
 @dataclass(frozen=True, eq=False)
 class System:
     """The equations f(y) = 0 of a kernel at time 0, in those entries of its state that matter.
 
     start (size,): a state, from which what does not matter is taken. kept (n,): indices of the entries that matter.
     scale (n,): their natural sizes; x = y[kept] / scale. round (n,): True for entries that form a unit vector, which
-    every step leaves one.
+    every step leaves one. closure: of a rod whose ends are joined.
     """
 
     kernel: Kernel
@@ -27,6 +41,7 @@ class System:
     kept: NDArray[np.intp]
     scale: Array
     round: Mask
+    closure: Closure | None = None
 
     @property
     def x(self) -> Array:
@@ -40,15 +55,17 @@ class System:
         return y
 
     def residual(self, x: Array) -> Array:
-        """(n,) f in natural sizes (1 / time): what is to vanish."""
+        """(n + k,) what is to vanish: f in natural sizes (1 / time), and the gap of a closed rod."""
         y = self.state(x)
         rate = np.empty_like(y)
         self.kernel.rate(0.0, y, rate)
-        return rate[self.kept] / self.scale
+        gap = np.empty(0) if self.closure is None else self.closure.gap(y)
+        return np.concatenate([rate[self.kept] / self.scale, gap])
 
     def linear(self, x: Array) -> Linear:
         """The equations linearised at x, on the motions that leave unit vectors so."""
-        J = self.kernel.jacobian(0.0, self.state(x))[np.ix_(self.kept, self.kept)]
+        y = self.state(x)
+        J = self.kernel.jacobian(0.0, y)[np.ix_(self.kept, self.kept)]
         J = J / self.scale[:, None] * self.scale
         moves = self.kernel.algebraic[self.kept] == 0.0
         basis = np.eye(len(x))
@@ -61,7 +78,11 @@ class System:
             basis = np.concatenate([basis, around], axis=1)
             moves = np.concatenate([moves[~self.round], np.ones(len(q) - 1, dtype=bool)])
             J = basis.T @ J @ basis
-        return Linear(J, moves, basis)
+        if self.closure is None:
+            return Linear(J, moves, basis, np.empty((0, len(x))), np.empty((len(J), 0)))
+        closing = self.closure.slope(y, self.kept) * self.scale
+        lost = basis.T @ (self.closure.lost(y, self.kept) * self.scale[:, None])
+        return Linear(J, moves, basis, closing, lost)
 
     def moved(self, x: Array, step: Array) -> Array:
         """x after a step (n,)."""
