@@ -10,7 +10,7 @@ import sys
 from collections.abc import Callable, Mapping
 from functools import wraps
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import click
 from rich.console import Console
@@ -34,6 +34,7 @@ from geocosserat.version import VERSION
 
 NO, WRONG_INPUT, NOT_REACHED = 1, 2, 3
 MOST_PROCESSES = 4
+Found = TypeVar("Found")
 
 SETTINGS = click.option(
     "--set", "settings", metavar="KEY=VALUE", multiple=True, help="Change any key, e.g. rod.length=2."
@@ -100,6 +101,85 @@ def run(
     if not result.reached:
         click.echo(f"geocosserat: not reached: {result.reason}", err=True)
         sys.exit(NOT_REACHED)
+
+
+@main.command()
+@click.argument("scene", type=click.Path())
+@click.option("--out", type=click.Path(), help="Folder for equilibrium.nc, .png and .json.")
+@click.option("--accuracy", type=float, help="Position error, relative to the length of the rod.")
+@click.option("--all", "every", is_flag=True, help="Search for further states of rest.")
+@SETTINGS
+@OVERWRITE
+@JSON
+@_one_message
+def equilibrium(
+    scene: str,
+    out: str | None,
+    accuracy: float | None,
+    every: bool,
+    settings: tuple[str, ...],
+    overwrite: bool,
+    as_json: bool,
+) -> None:
+    """Where SCENE rests, found directly, and whether it stays there."""
+    from geocosserat.conductor.equilibrium import equilibrium as find_equilibrium
+    from geocosserat.results.stability_table import print_rest
+
+    found = _reached(
+        lambda: find_equilibrium(
+            scene, out, settings=settings, accuracy=accuracy, every=every, overwrite=overwrite
+        )
+    )
+    if as_json:
+        _print_json(found.fields)
+        return
+    print_rest(found.solution, found.residual, found.modes, Console(), [str(file) for file in found.files])
+    for number, other in enumerate((found.solutions or ())[1:], start=2):
+        print_rest(other.solution, other.residual, other.modes, Console(), title=f"state of rest {number}")
+
+
+@main.command()
+@click.argument("scene", type=click.Path())
+@click.option("--out", type=click.Path(), help="Folder for stability.png, .svg and .json.")
+@click.option("--over", metavar="KEY=A:B", multiple=True, help="Follow the state while a value changes; twice: a map.")
+@click.option("--count", type=int, default=6, show_default=True, help="How many growth rates to tell.")
+@SETTINGS
+@OVERWRITE
+@JSON
+@_one_message
+def stability(
+    scene: str,
+    out: str | None,
+    over: tuple[str, ...],
+    count: int,
+    settings: tuple[str, ...],
+    overwrite: bool,
+    as_json: bool,
+) -> None:
+    """Do small motions about the rest of SCENE grow, and from which value of a key on?"""
+    from geocosserat.conductor.stability import stability as find_stability
+    from geocosserat.results.stability_table import print_stability
+
+    found = _reached(
+        lambda: find_stability(scene, out, over=over, count=count, settings=settings, overwrite=overwrite)
+    )
+    if as_json:
+        _print_json(found.fields)
+    else:
+        print_stability(found.record, Console())
+
+
+def _reached(find: Callable[[], Found]) -> Found:
+    """What is found; ends with code 3 if nothing is, or if it is interrupted."""
+    from geocosserat.conductor.equilibrium import NotReached
+
+    try:
+        return find()
+    except KeyboardInterrupt:
+        click.echo("geocosserat: interrupted", err=True)
+    except NotReached as error:
+        click.echo(f"geocosserat: not reached: {error}", err=True)
+    sys.exit(NOT_REACHED)
 
 
 @main.command()

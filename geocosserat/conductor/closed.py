@@ -23,20 +23,24 @@ class Closed:
 
     def gap(self, y: Array) -> Array:
         """(d,) the pose of the last node seen from the first."""
-        return self._gaps(y[None])[0]
+        found: Array = self._gaps(y[None])[0]
+        return found
 
     def slope(self, y: Array, kept: NDArray[np.intp]) -> Array:
         """(d, n) how it changes with entries of the state."""
         length, group = float(self.rod.mesh.edges[-1]), self.rod.structure.group
+        points = self.rod.mesh.elements * self.rod.mesh.degree
         rows = np.array([STEP] * group.translations + [STEP / length] * group.rotations)
-        sizes = np.append(np.repeat(rows, self.rod.mesh.elements * self.rod.mesh.degree), np.ones(len(y)))[: len(y)]
-        h = sizes[kept]
+        h = np.full(len(y), STEP)
+        h[: len(rows) * points] = np.repeat(rows, points)
+        h = h[kept]
         moved = np.zeros((len(kept), len(y)))
         moved[np.arange(len(kept)), kept] = h
-        return ((self._gaps(y + moved) - self._gaps(y - moved)) / (2 * h[:, None])).T
+        change: Array = (self._gaps(y + moved) - self._gaps(y - moved)) / (2 * h[:, None])
+        return change.T
 
     def lost(self, y: Array, kept: NDArray[np.intp]) -> Array:
-        """(n, d) the stresses of a closed rod that are balanced everywhere: no motion of it changes the turn by them."""
+        """(n, d) the stresses that are balanced all round a closed rod: no motion of it changes the turn by them."""
         group, mesh = self.rod.structure.group, self.rod.mesh
         A = strain_rates(mesh, group, self.rod.turn(y))
         d = group.dimension

@@ -11,8 +11,8 @@ from geocosserat.model.records import Scene
 from geocosserat.planning.gap import position_gap
 from geocosserat.planning.settings import SIZES
 from geocosserat.statics.find import find
-from geocosserat.statics.linear import Complex
 from geocosserat.statics.newton import NotAtRest, Rest
+from geocosserat.statics.pencil import Complex
 
 LARGEST = 1600
 """Unknowns with which dense matrices are still a matter of seconds."""

@@ -26,7 +26,8 @@ from geocosserat.model.formulas import formulas
 from geocosserat.model.records import End, Scene
 from geocosserat.model.seen import seen
 from geocosserat.solver.consistent import consistent
-from geocosserat.statics.linear import Complex, Linear
+from geocosserat.statics.linear import Linear
+from geocosserat.statics.pencil import Complex
 from geocosserat.statics.system import System
 
 STRAYS = 1e-2

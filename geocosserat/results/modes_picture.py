@@ -7,6 +7,7 @@ import os
 import textwrap
 import warnings
 from collections.abc import Sequence
+from itertools import pairwise
 from pathlib import Path
 
 import matplotlib
@@ -81,7 +82,11 @@ def _save(result: Figure, path: str | os.PathLike[str]) -> Path:
 
 
 def _draw_rod(
-    result: Figure, where: tuple[float, float, float, float], solution: Solution, modes: Modes, further: Sequence[Solution]
+    result: Figure,
+    where: tuple[float, float, float, float],
+    solution: Solution,
+    modes: Modes,
+    further: Sequence[Solution],
 ) -> None:
     """The rod, thick; its leading motions to either side, thin; further states of rest, grey."""
     planar = solution.motion == "planar"
@@ -119,11 +124,11 @@ def _smooth(solution: Solution, positions: Array) -> Array:
 def _draw_rates(axes: Axes, modes: Modes) -> None:
     """Growth rates in the complex plane; to the right of the line they grow."""
     axes.axvline(0.0, color=style.FAINT, linewidth=0.8)
-    for number, growth in enumerate(modes.growth.tolist()):
-        pair = [g for g, _ in _distinct(modes)]
-        colour = next((c for c, g in zip(COLOURS, pair, strict=False) if abs(g - growth.real - 1j * abs(growth.imag)) < 1e-12),
-                      style.INK)
-        axes.plot(growth.real, growth.imag, marker="o", color=colour, markersize=5, zorder=3 + number)
+    shown = [growth for growth, _ in _distinct(modes)]
+    for growth in modes.growth.tolist():
+        number = int(np.abs(np.array(shown) - complex(growth.real, abs(growth.imag))).argmin())
+        colour = COLOURS[number] if number < len(COLOURS) else style.INK
+        axes.plot(growth.real, growth.imag, marker="o", color=colour, markersize=5, zorder=3)
     axes.set_xlabel("growth rate (1 / time)")
     axes.set_ylabel("frequency (radians / time)")
     words = "stable" if modes.stable else f"unstable: {modes.unstable} motions grow"
@@ -144,7 +149,8 @@ def _draw_branches(axes: Axes, followed: Followed) -> None:
         growing = np.array([point.growth > 0 for point in branch])
         colour = style.INK if number == 0 else COLOURS[(number - 1) // 2 % len(COLOURS)]
         for a, b in _pieces(growing):
-            axes.plot(values[a:b + 1], heights[a:b + 1], color=colour, linewidth=1.4, linestyle="--" if growing[a] else "-")
+            dashes = "--" if growing[a] else "-"
+            axes.plot(values[a:b + 1], heights[a:b + 1], color=colour, linewidth=1.4, linestyle=dashes)
     for crossing in followed.crossings:
         axes.axvline(crossing.value, color=style.FAINT, linewidth=0.7, linestyle=(0, (1, 2)), zorder=0)
     axes.set_ylabel("right end, moved by")
@@ -161,7 +167,7 @@ def _widest(followed: Followed, start: Array) -> Array:
 def _pieces(growing: Array) -> list[tuple[int, int]]:
     """Stretches of neighbours that are alike, each up to the first of the next."""
     edges = [0, *(np.flatnonzero(growing[1:] != growing[:-1]) + 1), len(growing)]
-    return [(int(a), min(int(b), len(growing) - 1)) for a, b in zip(edges, edges[1:], strict=False)]
+    return [(int(a), min(int(b), len(growing) - 1)) for a, b in pairwise(edges)]
 
 
 def _draw_growth(axes: Axes, followed: Followed) -> None:

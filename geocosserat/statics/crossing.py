@@ -8,8 +8,8 @@ import numpy as np
 from scipy.optimize import toms748
 
 from geocosserat.kernel.contract import Array
-from geocosserat.statics.linear import Complex
 from geocosserat.statics.path import Family, Place, advance, begin, follow
+from geocosserat.statics.pencil import Complex
 
 EXACT = 1e-13
 """To which a crossing is found along the path, in units of its length."""

@@ -6,8 +6,9 @@ from contextlib import suppress
 import numpy as np
 
 from geocosserat.kernel.contract import Array
-from geocosserat.statics.linear import Complex, Linear
+from geocosserat.statics.linear import Linear
 from geocosserat.statics.newton import REACH, SMALL, NotAtRest, Rest, newton, relax, size
+from geocosserat.statics.pencil import Complex
 from geocosserat.statics.system import System
 
 MODES, PUSHES = 3, (0.5, 2.0)
