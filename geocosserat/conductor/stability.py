@@ -6,6 +6,7 @@ import json
 import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -39,6 +40,9 @@ RATES = 1e-8
 
 ROUGH = 1e-4
 """To which positions and the leading rate are as exact, relatively, on the mesh on which states are followed."""
+
+MOST = 100
+"""States on a branch that leaves the path sideways, at most."""
 
 BEFORE = 0.02
 """Of the interval: how far before a crossing a finer mesh begins to look for it."""
@@ -127,11 +131,11 @@ def _followed(scene: Scene, over: Over, state: State) -> Followed:
     crossings = list(looked.crossings(spots))
     exact = [_refined(scene, over, state, looked, crossing) for crossing in crossings]
     found = [main]
-    for crossing in crossings:
-        if crossing.gains and crossing.kind == "divergence" and not crossing.fold:
-            for place in branches(crossing):
-                _, side, _ = _walked(looked, looked.switched(place), over)
-                found.append((_point(looked, crossing.spot, over), *side))
+    first = next((crossing for crossing in crossings if crossing.gains), None)
+    if first is not None and first.kind == "divergence" and not first.fold:
+        for place in branches(first):
+            _, side, _ = _walked(looked, islice(looked.switched(place), MOST), over)
+            found.append((_point(looked, first.spot, over), *side))
     return Followed(over.key, (over.first, over.last), tuple(found), tuple(exact), reason)
 
 

@@ -15,7 +15,6 @@ from geocosserat.discretisation.pose import Poses
 from geocosserat.discretisation.sampling import friction_of, left_of_friction, slowest
 from geocosserat.discretisation.semidiscrete import SemiDiscrete, discretise
 from geocosserat.discretisation.structure import RodStructure, present
-from geocosserat.discretisation.structuring import structure_of
 from geocosserat.kernel.library import KernelText
 from geocosserat.kernel.load import load
 from geocosserat.kernel.native import NativeRod
@@ -23,7 +22,8 @@ from geocosserat.kernel.pure import NumpyRod
 from geocosserat.model.errors import InputError
 from geocosserat.model.expressions import Number, evaluate, symbols
 from geocosserat.model.formulas import formulas
-from geocosserat.model.records import End, Scene
+from geocosserat.model.law import rates
+from geocosserat.model.records import End, RodModel, Scene
 from geocosserat.model.seen import seen
 from geocosserat.solver.consistent import consistent
 from geocosserat.statics.linear import Linear
@@ -147,7 +147,7 @@ def stand(scene: Scene, size: tuple[int, int], kernel_text: Callable[[RodStructu
 
     Raises InputError if the scene turns for ever in what it sees of the world.
     """
-    held = _is_held(scene)
+    held = _is_held(scene.model)
     still = held and "driven" not in (scene.model.left.kind, scene.model.right.kind)
     rod, text, kernel, system = _system(_plainly_dragged(scene) if still else scene, size, kernel_text)
     structure = rod.structure
@@ -181,14 +181,16 @@ def _system(
     return rod, text, kernel, System(kernel, consistent(kernel, 0.0, rod.state), kept, scale, around, closure)
 
 
-def _is_held(scene: Scene) -> bool:
+def _is_held(model: RodModel) -> bool:
     """Whether it is known how the rod moves where it rests: not at all, or as its driven end does; and its stress does
     not answer to rates."""
-    model, frame = scene.model, seen(scene.model.group.space)
     kinds = {model.left.kind, model.right.kind}
-    held = bool(kinds & {"clamped", "driven"}) or kinds == {"pinned"}
+    if model.joined or not (kinds & {"clamped", "driven"} or kinds == {"pinned"}):
+        return False
+    frame, answers = seen(model.group.space), set(rates(model.group))
     flows = any(present((*velocity, *spin)) for velocity, spin in (effect.medium(frame) for effect in model.effects))
-    return held and not flows and not any(structure_of(model).viscous)
+    viscous = model.law is not None and any(answers & symbols(e) for e in model.law.stress or ())
+    return not flows and not viscous
 
 
 def _halted(scene: Scene) -> Scene:

@@ -67,7 +67,7 @@ class Eased:
 
 def begin(family: Family, x: Array, p: float, sign: float) -> Place:
     """The place of a state of rest, from which p grows (sign 1) or falls (-1)."""
-    return _directed(family, x, p, np.zeros_like(x), sign)
+    return _directed(family, x, p, family.slope(x, p), np.zeros_like(x), sign)
 
 
 def follow(family: Family, place: Place, low: float = 0.0, high: float = 1.0, most: int = 1000) -> Iterator[Place]:
@@ -109,7 +109,7 @@ def advance(family: Family, place: Place, length: float) -> tuple[Place, int]:
             x, p = family.moved(x, step), p + more
             now = max(size(step), abs(more))
             if now < EXACT:
-                return _directed(family, x, p, place.along, place.onward), rounds
+                return _directed(family, x, p, slope, place.along, place.onward), rounds
             if not now < max(0.5 * last, 1e-3):
                 break
             last = now
@@ -126,13 +126,14 @@ def _landed(family: Family, one: Place, other: Place, p: float) -> Place:
         step = family.linear(x, p).step(family.residual(x, p))
         x = family.moved(x, step)
         if size(step) < EXACT:
-            return _directed(family, x, p, one.along, one.onward)
+            return _directed(family, x, p, family.slope(x, p), one.along, one.onward)
     raise NotAtRest("Newton's method does not converge at the end of the interval")
 
 
-def _directed(family: Family, x: Array, p: float, along: Array, onward: float) -> Place:
-    """The place with its direction, on the side of the one that led there."""
-    slope, row = family.slope(x, p), along / len(x)
-    d, e = family.linear(x, p).bordered(slope, row, onward, np.zeros_like(x), 1.0)
+def _directed(family: Family, x: Array, p: float, slope: Array, along: Array, onward: float) -> Place:
+    """The place with its direction, on the side of the one that led there. slope: how the residual changes with p,
+    there or nearby: the direction only says where to look next."""
+    row = along / len(x)
+    d, e = family.linear(x, p).bordered(slope, row, onward, np.zeros_like(slope), 1.0)
     length = float(np.sqrt(d @ d / len(x) + e * e))
     return Place(x, p, d / length, e / length)
