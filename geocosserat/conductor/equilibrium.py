@@ -177,7 +177,7 @@ def _written(found: Equilibrium, folder: Path) -> Equilibrium:
     write_summary(found.fields, files[2])
     from geocosserat.results.modes_picture import rest_picture  # last: whatever happens to it, the results are there
 
-    rest_picture(found.solution, found.modes, [one.solution for one in found.solutions or ()], files[1])
+    rest_picture(found.solution, found.modes, [one.solution for one in (found.solutions or ())[1:]], files[1])
     return found
 
 

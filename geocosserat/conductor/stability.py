@@ -128,9 +128,13 @@ def _followed(scene: Scene, over: Over, state: State) -> Followed:
     neutral = modes_of(None, state).neutral
     looked, rest = _looked(scene, over, (mesh.elements, mesh.degree), neutral, state.standing, state.rest.x)
     spots, main, reason = _walked(looked, looked.path(rest, 0.0), over)
-    crossings = list(looked.crossings(spots))
+    numbered = list(looked.crossings(spots))
+    crossings = [crossing for _, crossing in numbered]
     exact = [_refined(scene, over, state, looked, crossing) for crossing in crossings]
-    found = [main]
+    points = list(main)
+    for shift, (index, crossing) in enumerate(numbered):
+        points.insert(index + 1 + shift, _point(looked, crossing.spot, over))
+    found = [tuple(points)]
     first = next((crossing for crossing in crossings if crossing.gains), None)
     if first is not None and first.kind == "divergence" and not first.fold:
         for place in branches(first):
@@ -209,7 +213,7 @@ def _again(
     looked, rest = _looked(scene, over, size, neutral, rods.at(start), before, start)
     low, high = sorted((start, place.p + sign * BEFORE))
     spots, _, _ = _walked(looked, looked.path(rest, start, sign, low, high), over)
-    for found in looked.crossings(spots):
+    for _, found in looked.crossings(spots):
         if (found.gains, found.number, found.kind) == (crossing.gains, crossing.number, crossing.kind):
             return found, looked.family, found.spot.place.x
     raise NotAtRest("it is not there on another mesh")

@@ -23,6 +23,7 @@ from geocosserat.results.curves import smooth
 from geocosserat.results.shapes import frame_box
 from geocosserat.results.solution import Array, Solution
 from geocosserat.results.stability import Complex, Followed, Map, Modes, Stability
+from geocosserat.results.summary import count
 
 COLOURS = ("#0072b2", "#d55e00", "#009e73")
 """Of the motions shown, and of the branches."""
@@ -35,10 +36,11 @@ def rest_picture(
     solution: Solution, modes: Modes, further: Sequence[Solution], path: str | os.PathLike[str]
 ) -> Path:
     """Draws a state of rest, its leading motions and further states of rest, and writes it as `picture` does."""
-    result = _page(solution.title)
-    _draw_rod(result, (0.06, 0.11, 0.5, 0.76), solution, modes, further)
-    _draw_rates(result.add_axes((0.68, 0.13, 0.29, 0.7)), modes)
-    return _save(result, path)
+    with matplotlib.rc_context(style.RC):
+        result = _page(solution.title)
+        _draw_rod(result, (0.07, 0.11, 0.5, 0.76), solution, modes, further)
+        _draw_rates(result.add_axes((0.68, 0.13, 0.29, 0.7)), modes)
+        return _save(result, path)
 
 
 def picture(record: Stability, path: str | os.PathLike[str]) -> Path:
@@ -48,33 +50,33 @@ def picture(record: Stability, path: str | os.PathLike[str]) -> Path:
     """
     if record.followed is None and record.map is None:
         return rest_picture(record.solution, record.modes, (), path)
-    result = _page(record.solution.title)
-    _draw_rod(result, (0.05, 0.11, 0.36, 0.76), record.solution, record.modes, ())
-    if record.followed is not None:
-        top, bottom = result.add_axes((0.53, 0.54, 0.44, 0.36)), result.add_axes((0.53, 0.11, 0.44, 0.36))
-        _draw_branches(top, record.followed)
-        _draw_growth(bottom, record.followed)
-        top.sharex(bottom)
-        top.tick_params(labelbottom=False)
-    elif record.map is not None:
-        _draw_map(result, record.map)
-    return _save(result, path)
+    with matplotlib.rc_context(style.RC):
+        result = _page(record.solution.title)
+        _draw_rod(result, (0.07, 0.11, 0.35, 0.76), record.solution, record.modes, ())
+        if record.followed is not None:
+            bottom = result.add_axes((0.54, 0.11, 0.43, 0.36))
+            top = result.add_axes((0.54, 0.53, 0.43, 0.36), sharex=bottom)
+            top.tick_params(labelbottom=False)
+            _draw_branches(top, record.followed)
+            _draw_growth(bottom, record.followed)
+        elif record.map is not None:
+            _draw_map(result, record.map)
+        return _save(result, path)
 
 
 def _page(title: str) -> Figure:
-    with matplotlib.rc_context(style.RC):
-        result = Figure(figsize=style.SIZE, dpi=style.DPI)
-        FigureCanvasAgg(result)
-        # a title may hold dollar signs and is not mathematics
-        result.text(0.02, 0.965, textwrap.shorten(title, 90, placeholder=" ..."), fontsize=12, fontweight="bold",
-                    va="top", parse_math=False)
+    result = Figure(figsize=style.SIZE, dpi=style.DPI)
+    FigureCanvasAgg(result)
+    # a title may hold dollar signs and is not mathematics
+    result.text(0.02, 0.965, textwrap.shorten(title, 90, placeholder=" ..."), fontsize=12, fontweight="bold",
+                va="top", parse_math=False)
     return result
 
 
 def _save(result: Figure, path: str | os.PathLike[str]) -> Path:
     target, image = Path(path), io.BytesIO()
     kind = target.suffix.lower()[1:]
-    with matplotlib.rc_context(style.RC), warnings.catch_warnings():
+    with warnings.catch_warnings():
         # a title in a script that no font at hand has
         warnings.filterwarnings("ignore", message="Glyph", category=UserWarning)
         result.savefig(image, format=kind, metadata={} if kind == "png" else {"Date": None})
@@ -103,7 +105,7 @@ def _draw_rod(
         axes.set_aspect("equal", adjustable="datalim")
         axes.margins(0.06)
         axes.set_xlabel("$x$")
-        axes.set_ylabel("$y$", rotation=0, labelpad=8)
+        axes.set_ylabel("$y$", rotation=0, labelpad=6)
         return
     space: Axes3D = result.add_axes(where, projection="3d")
     for points, colour, width, dashes in curves:
@@ -131,12 +133,14 @@ def _draw_rates(axes: Axes, modes: Modes) -> None:
         axes.plot(growth.real, growth.imag, marker="o", color=colour, markersize=5, zorder=3)
     axes.set_xlabel("growth rate (1 / time)")
     axes.set_ylabel("frequency (radians / time)")
-    words = "stable" if modes.stable else f"unstable: {modes.unstable} motions grow"
+    words = "stable" if modes.stable else f"unstable: {count(modes.unstable, 'small motion')} that grow"
     axes.set_title(words + (f", {modes.neutral} neutral" if modes.neutral else ""))
+    sizes = np.abs(modes.growth.real[np.abs(modes.growth.real) > 0])
+    if sizes.size and sizes.max() > 20 * sizes.min():
+        axes.set_xscale("symlog", linthresh=float(sizes.min()))
     if not np.any(modes.growth.imag):
         axes.set_ylim(-1.0, 1.0)
         axes.set_yticks([0.0])
-    style.fold_powers(axes)
 
 
 def _draw_branches(axes: Axes, followed: Followed) -> None:
@@ -158,8 +162,11 @@ def _draw_branches(axes: Axes, followed: Followed) -> None:
 
 
 def _widest(followed: Followed, start: Array) -> Array:
-    """The direction in which the right end moves most."""
+    """The direction in which the right ends of the branches lie apart, or that in which the one there is moves most."""
+    _, *sides = followed.branches
     moves = np.array([np.array(point.tip) - start for branch in followed.branches for point in branch])
+    if len(sides) > 1:
+        moves = np.array([np.array(a.tip) - np.array(b.tip) for a, b in zip(*sides[:2], strict=False)])
     found: Array = np.linalg.svd(moves, full_matrices=False)[2][0]
     return found if found[np.abs(found).argmax()] > 0 else -found
 

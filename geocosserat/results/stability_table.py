@@ -52,7 +52,7 @@ def print_stability(record: Stability, console: Console) -> None:
 
 
 def _verdict(modes: Modes) -> str:
-    words = "stable" if modes.stable else f"not stable: {count(modes.unstable, 'small motion')} grow"
+    words = "stable" if modes.stable else f"not stable: {count(modes.unstable, 'small motion')} that grow"
     neutral = f"; {count(modes.neutral, 'motion')} that nothing resists" if modes.neutral else ""
     return f"{words}; leading rate {_rate(modes.growth.tolist())}{neutral}"
 

@@ -79,9 +79,10 @@ class Looked:
         for next_place in follow(self.family, place, low, high):
             yield self.at(next_place)
 
-    def crossings(self, spots: list[Spot]) -> Iterator[Crossing]:
-        """Where growth rates change their sign between neighbours; a pair that oscillates is one."""
-        for one, other in pairwise(spots):
+    def crossings(self, spots: list[Spot]) -> Iterator[tuple[int, Crossing]]:
+        """Where growth rates change their sign between neighbours, and the number of the first of them; a pair that
+        oscillates is one."""
+        for index, (one, other) in enumerate(pairwise(spots)):
             numbers = list(range(*sorted((one.unstable, other.unstable))))
             if one.unstable > other.unstable:
                 numbers.reverse()
@@ -91,7 +92,7 @@ class Looked:
                 pair = found and found[-1].frequency and crossing.frequency
                 if not (pair and abs(found[-1].spot.place.p - crossing.spot.place.p) < SAME):
                     found.append(crossing)
-            yield from found
+            yield from ((index, crossing) for crossing in found)
 
     def _between(self, one: Spot, other: Spot, number: int) -> Crossing:
         """The crossing of the rate of that number, bracketed along the path."""
