@@ -15,8 +15,8 @@ The load P makes the tension -P all along; with eta = h1 + P / k2 the problem of
 
   Q = 0 in these modes. Those with Q: between pins none; between clamps tan(x) = x (1 - P / (eta k2)), x > pi, later.
 
-Haringx's load, for the stress of this rod is in the section's own axes: Engesser's, P (1 + P / k2) = P_E (1 + ...) from
-a shear force across the axis, would be P = P_E / (1 + P_E / k2). Without k1 and k2 they are Euler's.
+This is Haringx's load, for the shear force of this rod is the one in its section. Were it the one across the bent axis,
+it would be Engesser's, P = P_E / (1 + P_E / k2). Without stretch and shear both are Euler's, P_E.
 
 Source: S. P. Timoshenko, J. M. Gere, *Theory of Elastic Stability*, article 2.17; J. A. Haringx, Philips Res. Rep. 3
 (1948) 401; A. Magnusson, M. Ristinmaa, C. Ljung, Int. J. Solids Struct. 38 (2001) 8441 (with stretch).
@@ -26,8 +26,6 @@ Dimensions: P, k1, k2 force; k3 force x length^2; g none.
 
 import math
 from typing import Any, Literal
-
-import mpmath
 
 from tests.references.stability.linear import Problem
 from tests.references.stability.straight import Rod, State, problem, stretched
@@ -62,4 +60,4 @@ def loaded(rod: Rod, load: Any) -> Problem:
 
 def grown(rod: Rod, stretch: Any, ends: Ends) -> Problem:
     """The rod between its fixed ends, near its straight state, at the reference stretch."""
-    return problem(rod, State(tension=[mpmath.mpf(rod.k1) * (1 - stretch)]), ends, ends)
+    return problem(rod, State(tension=[rod.k1 * (1 - stretch)]), ends, ends)

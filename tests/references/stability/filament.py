@@ -6,8 +6,8 @@ drag of rotation is, T being the tension,
 
     friction2 growth y = -k3 y'''' + T y'',   y = y' = 0 at the base,   y'' = y''' = 0 at the tip
 
-(of the density only y'' of T y'' survives, for T' y' and the force f y' across cancel). For P = k3 (a^2 - b^2) / L^2 ...
-its solutions are exponentials, and the determinant is Beck's,
+(of a density, too, only T y'' is left: T' y' and the force f y' across cancel). With a force at the tip the solutions
+are exponentials, and the determinant is Beck's,
 
     p^2 + 2 s + p sqrt(s) sin(a) sinh(b) + 2 s cos(a) cosh(b) = 0,   a^2, b^2 = sqrt(p^2 / 4 + s) +- p / 2
 
@@ -27,7 +27,7 @@ from typing import Any
 
 import mpmath
 
-from tests.references.stability.linear import DIGITS, Problem
+from tests.references.stability.linear import Problem
 from tests.references.stability.straight import Rod, State, problem, stretched
 
 
@@ -53,7 +53,7 @@ def beck(load: Any, growth: Any) -> Any:
 
 def beck_flutter(value: float, frequency: float) -> tuple[float, float]:
     """Load and frequency of flutter next to an estimate, from Beck's determinant."""
-    with mpmath.workdps(DIGITS):
+    with mpmath.workdps(30):
 
         def condition(p: Any, w: Any) -> list[Any]:
             d = beck(p, mpmath.mpc(0, w)) / 1e6
@@ -65,8 +65,10 @@ def beck_flutter(value: float, frequency: float) -> tuple[float, float]:
 
 def beck_meeting() -> float:
     """P L^2 / k3 at which the first two s meet: the load of Beck's column."""
-    with mpmath.workdps(DIGITS):
+    with mpmath.workdps(30):
         found = mpmath.findroot(
-            lambda p, s: [beck(p, -s), mpmath.diff(lambda x: beck(p, -x), s)], (mpmath.mpf(20), mpmath.mpf(121)), tol=1e-20
+            lambda p, s: [beck(p, -s), mpmath.diff(lambda x: beck(p, -x), s)],
+            (mpmath.mpf(20), mpmath.mpf(121)),
+            tol=1e-20,
         )
         return float(found[0])

@@ -25,16 +25,16 @@ from typing import Any
 
 import mpmath
 
-from tests.references.stability.linear import DIGITS, Problem
+from tests.references.stability.linear import Problem
 from tests.references.stability.straight import Rod, State, problem
 
 
 def classical(tension: float = 0.0) -> float:
     """M1 L / bend at which the rod without stretch and shear buckles, for T L^2 / bend = `tension`, not negative."""
-    with mpmath.workdps(DIGITS):
+    with mpmath.workdps(30):
         pull = mpmath.mpf(tension)
         if pull == 0:
-            return float(2 * mpmath.findroot(lambda x: mpmath.sin(x) - x * mpmath.cos(x), (4.4, 4.6), solver="anderson"))
+            return 2.0 * float(mpmath.findroot(lambda x: mpmath.sin(x) - x * mpmath.cos(x), 4.5))
 
         def miss(m: Any) -> Any:
             half = mpmath.sqrt(m * m / 16 - pull / 4)

@@ -17,13 +17,13 @@ from typing import Any
 
 import mpmath
 
-from tests.references.stability.linear import DIGITS, Problem
+from tests.references.stability.linear import Problem
 from tests.references.stability.straight import Rod, State, problem, stretched
 
 
 def classical() -> float:
     """q L^3 / k3 at which the rod without stretch and shear buckles."""
-    with mpmath.workdps(DIGITS):
+    with mpmath.workdps(30):
         zero = mpmath.findroot(lambda x: mpmath.besselj(-mpmath.mpf(1) / 3, x), mpmath.mpf("1.87"))
         return float((3 * zero / 2) ** 2)
 

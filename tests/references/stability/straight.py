@@ -32,7 +32,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
-import mpmath
 import numpy as np
 
 from tests.references.stability.linear import Problem
@@ -81,19 +80,19 @@ def _times(a: Polynomial, b: Polynomial) -> list[Any]:
 
 def stretched(rod: Rod, tension: Polynomial) -> list[Any]:
     """h1 of a rod whose h1 is 1 at rest."""
-    return added([1.0], [x / mpmath.mpf(rod.k1) for x in tension])
+    return added([1.0], [x / np.longdouble(rod.k1) for x in tension])
 
 
 def problem(rod: Rod, state: State, start: Start, end: End) -> Problem:
     """The equations above for Y = (xi, theta, Q, M)."""
-    shear = mpmath.mpf(1) / rod.k2
+    shear = np.longdouble(1) / rod.k2
     eta = added(state.stretch, [-shear * x for x in state.tension])
     turned = [-1j * k * x for k, x in enumerate(state.moment)][1:] or [0.0]
     entries = {
         (0, 1): eta,
         (0, 2): [shear],
-        (1, 1): [1j * x / mpmath.mpf(rod.bend) for x in state.moment] if any(state.moment) else [0.0],
-        (1, 3): [mpmath.mpf(1) / rod.bend],
+        (1, 1): [1j * x / np.longdouble(rod.bend) for x in state.moment] if any(state.moment) else [0.0],
+        (1, 3): [np.longdouble(1) / rod.bend],
         (2, 1): [-state.follower],
         (3, 1): added(_times(state.tension, eta), turned if any(state.moment) else [0.0]),
         (3, 2): [-x for x in eta],
