@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 
 from geocosserat.model.scene import load_scene
-from tests.physics.scenes import changed, growths
-from tests.references.stability import michell
+from tests.physics.scenes import changed, growths, polynomial
+from tests.references import chebyshev
+from tests.references.stability import equilibria, michell
+from tests.references.stability.equilibria import Equilibrium, all_equilibria
 from tests.references.stability.table import RING, Value, all_values
 
 FOLDER = Path(__file__).parents[2] / "examples" / "stability"
@@ -50,3 +52,25 @@ def test_the_linearised_kernel_has_the_growths_of_the_reference(entry: Value) ->
         moving = found[np.abs(found) > 1e-4]
         top = moving[np.argmax(moving.real)]
         assert abs(complex(top.real, abs(top.imag)) - expected) < 1e-6 * abs(expected)
+
+
+def _bent(entry: Equilibrium) -> dict[str, Any]:
+    """The scene of a bent equilibrium, starting from it: its strains as polynomials of u."""
+    _, state = (
+        equilibria.column(entry.settings["load"])
+        if entry.scene == "column_buckled"
+        else equilibria.bend(entry.settings["load"], entry.settings["torsion"])
+    )
+    u = chebyshev.points(16, state.length)
+    turns = np.array([state.turn(stress) for stress in state.stress(u)])[:, state.parts]
+    with open(FOLDER / f"{entry.scene}.toml", "rb") as file:
+        scene = tomllib.load(file)
+    scene.setdefault("start", {})["strain"] = [polynomial(u, turn, 16) for turn in turns.T]
+    return changed(scene, {f"parameters.{name}": value for name, value in entry.settings.items()})
+
+
+@pytest.mark.parametrize("entry", [all_equilibria()[1], all_equilibria()[-2]], ids=lambda entry: entry.scene)
+def test_the_linearised_kernel_has_the_growths_of_the_bent_equilibrium(entry: Equilibrium) -> None:
+    """Started from the strains of the reference, the leading growth is that of the table."""
+    found = growths(_bent(entry), 2, 10)
+    assert found[np.argmax(found.real)] == pytest.approx(entry.growth, rel=1e-5)

@@ -106,11 +106,10 @@ def _integrated(rod: Rod, load: float, bend: float) -> Array:
     return np.asarray(found.y[:, -1])
 
 
-def shot(rod: Rod, load: float, estimate: Tip) -> Tip:
-    """The same by shooting, from the bend at the clamp of an estimate."""
-    bend = brentq(
-        lambda b: _integrated(rod, load, b)[3], 0.99 * estimate.bend, 1.01 * estimate.bend, xtol=1e-14, rtol=1e-14
-    )
+def shot(rod: Rod, load: float, estimate: Tip, within: float = 0.01) -> Tip:
+    """The same by shooting, with a bend at the clamp `within` so much, relatively, of an estimate's."""
+    low, high = (1.0 - within) * estimate.bend, (1.0 + within) * estimate.bend
+    bend = brentq(lambda b: _integrated(rod, load, b)[3], low, high, xtol=1e-14, rtol=1e-14)
     x, y, angle, _ = _integrated(rod, load, bend)
     return Tip(float(x), float(y), float(angle), float(bend))
 

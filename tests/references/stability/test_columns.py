@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import pytest
 
@@ -24,7 +25,10 @@ def test_the_dead_load_is_a_zero_of_the_determinant(rod: Rod) -> None:
 def test_the_growth_is_a_zero_of_the_determinant(ends: Ends) -> None:
     """Both ends in place: the same, and the first along the way, those with a force across included."""
     stretch = columns.growth(SOFT, ends)
-    family = lambda g: columns.grown(SOFT, g, ends)  # noqa: E731
+
+    def family(g: Any) -> linear.Problem:
+        return columns.grown(SOFT, g, ends)
+
     assert linear.divergence(family, stretch * 1.001) == pytest.approx(stretch, rel=1e-14)
     assert linear.loss(family, [1.0, 2.0 * stretch - 1.0])[0] == pytest.approx(stretch, rel=1e-9)
 

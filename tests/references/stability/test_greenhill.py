@@ -1,6 +1,7 @@
 """Twisted rods: the equation with cotangents, the determinant, and the classical numbers."""
 
 import math
+from typing import Any
 
 import pytest
 
@@ -12,7 +13,10 @@ from tests.references.stability.straight import Rod
 def test_the_equation_with_cotangents_has_the_first_zero_of_the_determinant(tension: float) -> None:
     """The moment at which the rod without stretch and shear buckles, whatever the tension."""
     moment = greenhill.classical(tension)
-    family = lambda m: greenhill.twisted(Rod(), m, tension)  # noqa: E731
+
+    def family(m: Any) -> linear.Problem:
+        return greenhill.twisted(Rod(), m, tension)
+
     assert linear.divergence(family, moment * (1.0 + 1e-4)) == pytest.approx(moment, rel=1e-13)
     assert linear.growths(family(0.999 * moment), 1)[0].real < 0.0
     assert linear.growths(family(1.001 * moment), 1)[0].real > 0.0
