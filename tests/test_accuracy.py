@@ -72,6 +72,7 @@ def test_what_a_law_varies_is_noticed_as_what_a_stiffness_does() -> None:
         assert not any(Resolution(scene).sees_all(*size, 1e-6) for size in SIZES[:3])
 
 
+@pytest.mark.slow
 def test_a_pulse_of_a_law_is_not_stepped_over() -> None:
     """A wrench that pushes for a moment moves the rod as a weight does that pushes as long."""
     pulse = "50*(heaviside(t-0.1)-heaviside(t-0.1005))"
@@ -85,6 +86,7 @@ def test_a_pulse_of_a_law_is_not_stepped_over() -> None:
     np.testing.assert_allclose(pushed.tip["position"], heavy.tip["position"], rtol=0, atol=2e-6)
 
 
+@pytest.mark.slow
 def test_an_accuracy_that_a_limit_of_friction_cannot_have_is_said_at_once(examples: Path) -> None:
     """What is left of friction is an error of the model: nothing is computed more finely than that."""
     run = geocosserat.run(examples / "euler_bernoulli.toml", accuracy=1e-12, settings=["run.frames=2"])
@@ -162,6 +164,7 @@ def test_switches_are_found_where_they_are(text: str, times: list[float]) -> Non
     np.testing.assert_allclose(found, times, rtol=0, atol=1e-9)
 
 
+@pytest.mark.slow
 def test_two_held_ends_count_what_the_far_one_strayed() -> None:
     """Coarsely, the right end leaves its clamp by the error of the scheme; the estimate of a fine run covers it."""
     rod = {

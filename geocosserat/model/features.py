@@ -65,7 +65,7 @@ def pulses(e: Expression, variable: str, most: float, values: Mapping[str, float
         away = np.nan_to_num(np.abs(f - f[0]), nan=0.0)
         peak = int(np.argmax(away))
         if away[peak] > 2.0 * away[-1]:
-            lower = np.flatnonzero(away[peak:] < (1.0 - FLAT) * away[peak])  # the end of it comes where it steps or falls
+            lower = np.flatnonzero(away[peak:] < (1.0 - FLAT) * away[peak])  # it may be flat on top
             found.append(float(places[peak] + places[peak + lower[0] - 1]) / 2)
     return tuple(found)
 

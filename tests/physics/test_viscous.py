@@ -14,6 +14,7 @@ import pytest
 
 import geocosserat
 from geocosserat.algebra.groups import SE2, SE3
+from tests.marks import slow
 from tests.physics.scenes import Array, Scene, changed, farthest, gap, growths, simulate, straight
 from tests.references import axial_twist, euler_bernoulli, linear_rod
 
@@ -83,7 +84,7 @@ def test_small_bends_creep_at_the_rates_of_the_linear_theory(ends: tuple[Any, An
 
 
 @pytest.mark.parametrize("component", [0, 3])
-@pytest.mark.parametrize("ends", ["clamped-free", "free-free"])
+@pytest.mark.parametrize("ends", ["clamped-free", slow("free-free")])
 @pytest.mark.parametrize("eta", [1e-3, 0.2, 50.0])
 def test_pure_stretch_and_pure_twist_creep_in_their_closed_profiles(component: int, ends: Any, eta: float) -> None:
     """Of any size, two modes at once, on their way: strain and stress to 1e-11, and the ledger."""
@@ -131,7 +132,7 @@ def stirred(scene: Scene) -> Scene:
 
 
 @pytest.mark.parametrize("frozen", [False, True], ids=["full", "frozen"])
-@pytest.mark.parametrize("coefficients", [PLANE, SPACE], ids=["planar", "spatial"])
+@pytest.mark.parametrize("coefficients", [PLANE, slow(SPACE)], ids=["planar", "spatial"])
 def test_the_ledger_closes(coefficients: Any, frozen: bool) -> None:
     """Large motions: stored and dissipated add up to the work, the better the tighter the tolerance, with radau to
     round-off; where viscosity makes a difference of some percent of the length."""
@@ -148,7 +149,7 @@ def test_the_ledger_closes(coefficients: Any, frozen: bool) -> None:
 
 
 @pytest.mark.parametrize("ends", ENDS, ids="-".join)
-@pytest.mark.parametrize("coefficients", [PLANE, SPACE], ids=["planar", "spatial"])
+@pytest.mark.parametrize("coefficients", [PLANE, slow(SPACE)], ids=["planar", "spatial"])
 @pytest.mark.parametrize("rtol", [1e-3, 1e-8])
 def test_a_passive_rod_without_loads_never_gains_energy(coefficients: Any, ends: tuple[str, str], rtol: float) -> None:
     """From a wild start, with viscosities that couple and turn what they resist aside: frame by frame, also at a loose
@@ -259,7 +260,7 @@ def test_with_ever_more_viscosity_a_mode_tends_to_a_frozen_one(mode: str) -> Non
 # ways to compute it
 
 
-@pytest.mark.parametrize("frozen", [False, True], ids=["full", "frozen"])
+@pytest.mark.parametrize("frozen", [slow(False), True], ids=["full", "frozen"])
 def test_all_methods_and_both_languages_find_the_same(frozen: bool) -> None:
     """Implicit ones that know constraints, and ordinary ones for which the stress is solved for in each evaluation."""
     scene = changed(proportional(stirred(straight(*PLANE)), TAU), {"rod.frozen": ["h1"] if frozen else []})
