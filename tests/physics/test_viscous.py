@@ -203,12 +203,23 @@ def test_a_rod_that_its_viscosity_feeds_gains_energy_or_says_why_it_stops(
 ) -> None:
     """Short waves grow; it is said that the law is active, and the ledger closes as far as the run goes."""
     scene = changed(straight(*PLANE), {"start.strain": ["1", "0", "0.1*(1 - u)"], "run.until": 2.0})
-    run = simulate(viscous(scene, 0, 0, -0.02), 1, 6, 1e-6, "auto", frames=21, method=method)
+    run = simulate(viscous(scene, 0, 0, -0.1), 1, 6, 1e-6, "auto", frames=21, method=method)
     assert "the law of Kelvin and Voigt is active" in capsys.readouterr().err
     energy = run.solution.energy
     assert energy[-1] > 10 * energy[0] or not run.reached
     assert run.reached or run.solution.reason
     assert run.ledger["residual"] < 1e-2
+
+
+@pytest.mark.usefixtures("patience")
+@pytest.mark.parametrize("viscosity", [(0, -0.1, 0), slow((0, 0, -0.004))])
+def test_a_rod_that_its_viscosity_tears_apart_ever_faster_is_given_up(viscosity: tuple[float, ...]) -> None:
+    """Steps of Radau that grow shorter without end: not a million of them are taken to see that they lead nowhere."""
+    scene = changed(straight(*PLANE), {"start.strain": ["1", "0", "0.1*(1 - u)"], "run.until": 2.0})
+    run = simulate(viscous(scene, *viscosity), 1, 6, 1e-2, "c", frames=2, method="radau")
+    assert not run.reached
+    assert "the motion may be singular here" in run.solution.reason
+    assert run.evaluations["steps"] < 200_000
 
 
 @pytest.mark.usefixtures("patience")
