@@ -23,7 +23,7 @@ from geocosserat.kernel.compile import CompileError, compiler
 from geocosserat.model.errors import InputError
 from geocosserat.model.records import Scene
 from geocosserat.planning.gap import position_gap
-from geocosserat.planning.settings import LEAST, Setting
+from geocosserat.planning.settings import HABITS, Setting
 from geocosserat.results.atomic import write_bytes
 from geocosserat.results.checkpoint import Keeper
 from geocosserat.results.diagram import AS_GIVEN, Diagram, ModelError, Point, Reference
@@ -200,7 +200,8 @@ class _Measured:
             if self.spent > self.seconds:
                 self.left_out += last + 1 - decade
                 return
-            point = self._point(model, simulate, Setting(*size, max(10.0**-decade, LEAST[method]), method), mesh, exact)
+            setting = Setting(*size, max(10.0**-decade, HABITS[method].least), method)
+            point = self._point(model, simulate, setting, mesh, exact)
             self.points.append(point)
             failures += point.error is None
             errors.append(np.inf if point.error is None else point.error)

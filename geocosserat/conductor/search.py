@@ -17,8 +17,8 @@ from geocosserat.planning.plan import Choice, Errors, Level, Verdict, plan
 from geocosserat.planning.resolution import Resolution
 from geocosserat.planning.settings import (
     DEFAULT_ACCURACY,
+    HABITS,
     LARGEST_DENSE,
-    LEAST,
     ROUND_OFF,
     SIZES,
     Setting,
@@ -208,6 +208,6 @@ def _reason(
         return f"a finer run, for the accuracy asked for, did not come to its end: {last.trajectory.reason}"
     if estimate is not None and modelled > 0.3 * estimate:
         return f"rotations without friction are a limit, of which {modelled:.1g} is left; ask for a larger error"
-    if estimate is not None and kept.setting.rtol <= LEAST[kept.setting.method]:
+    if estimate is not None and kept.setting.rtol <= HABITS[kept.setting.method].least:
         return f"the accuracy asked for is below round-off: at the least tolerance, about {estimate:.1g} is left"
     return "the accuracy asked for was not reached by refinement"
