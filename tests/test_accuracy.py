@@ -11,6 +11,7 @@ from geocosserat.model.expressions import parse, switch_times
 from geocosserat.model.scene import load_scene
 from geocosserat.planning.resolution import Resolution
 from geocosserat.planning.settings import SIZES
+from tests.marks import slow
 
 ROD = {"motion": "planar", "length": 1.0, "stiffness": [1e4, 1e4, 1.0], "friction": [1.0, 1.0, 0.01]}
 
@@ -39,7 +40,7 @@ def test_a_feature_too_fine_for_all_is_not_reported_as_solved() -> None:
     assert "too narrow for the finest mesh; see run.elements" in run.reason
 
 
-@pytest.mark.parametrize("accuracy", [1e-2, 1e-4])
+@pytest.mark.parametrize("accuracy", [slow(1e-2), 1e-4])
 def test_a_narrow_feature_counts_by_what_it_does_at_loose_accuracies_too(accuracy: float) -> None:
     """A hinge of a thousandth of the length bends by half a radian; small as it is, all turns about it."""
     hinge = {**ROD, "stiffness": [1e4, 1e4, "1-0.9995*exp(-((u-0.3)/0.001)**2)"]}
@@ -51,7 +52,7 @@ def test_a_narrow_feature_counts_by_what_it_does_at_loose_accuracies_too(accurac
     assert away < accuracy or not run.reached
 
 
-@pytest.mark.parametrize("width", [1e-4, 1e-9])
+@pytest.mark.parametrize("width", [slow(1e-4), 1e-9])
 def test_what_no_mesh_sees_is_not_reported_as_solved(width: float) -> None:
     """Two meshes without a point on it would agree to all digits."""
     bump = {"kind": "follower", "force": [0.0, f"exp(-((u-0.4321)/{width})**2)/{width}"]}
@@ -97,6 +98,7 @@ def test_an_accuracy_that_a_limit_of_friction_cannot_have_is_said_at_once(exampl
     assert geocosserat.run(examples / "euler_bernoulli.toml", accuracy=1.2e-10, settings=["run.frames=2"]).reached
 
 
+@pytest.mark.slow
 def test_an_accuracy_below_round_off_is_answered_with_the_floor(examples: Path) -> None:
     """How far it went, and that no tolerance goes further."""
     run = geocosserat.run(examples / "cantilever.toml", accuracy=3e-15, settings=["run.frames=2"])

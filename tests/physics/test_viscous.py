@@ -131,7 +131,7 @@ def stirred(scene: Scene) -> Scene:
     )
 
 
-@pytest.mark.parametrize("frozen", [False, True], ids=["full", "frozen"])
+@pytest.mark.parametrize("frozen", [slow(False), True], ids=["full", "frozen"])
 @pytest.mark.parametrize("coefficients", [PLANE, slow(SPACE)], ids=["planar", "spatial"])
 def test_the_ledger_closes(coefficients: Any, frozen: bool) -> None:
     """Large motions: stored and dissipated add up to the work, the better the tighter the tolerance, with radau to
