@@ -23,7 +23,7 @@ def main() -> None:
     except (Exception, KeyboardInterrupt, SystemExit) as end:
         if not interrupts:
             raise
-        code = end.code if isinstance(end, SystemExit) else 3
+        code = end.code or 0 if isinstance(end, SystemExit) else 3
         if not isinstance(end, SystemExit):
             print("geocosserat: interrupted", file=sys.stderr)
         for stream in (sys.stdout, sys.stderr):
