@@ -44,7 +44,7 @@ OVERWRITE = click.option("--overwrite", is_flag=True, help="Replace files of an 
 
 
 def _one_message(command: Callable[..., None]) -> Callable[..., None]:
-    """Wrong input ends with code 2 and one line on standard error."""
+    """Wrong input ends with code 2 and one line on standard error, an interrupt with code 3 and another."""
 
     @wraps(command)
     def guarded(*args: Any, **options: Any) -> None:
@@ -53,6 +53,9 @@ def _one_message(command: Callable[..., None]) -> Callable[..., None]:
         except (InputError, FileError, CompileError) as error:
             click.echo(f"geocosserat: {error}", err=True)
             sys.exit(WRONG_INPUT)
+        except KeyboardInterrupt:
+            click.echo("geocosserat: interrupted", err=True)
+            sys.exit(NOT_REACHED)
         except BrokenPipeError:  # the reader of our output left
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
@@ -91,8 +94,9 @@ def run(
     try:
         result = run_scene(scene, out, settings=settings, accuracy=accuracy, overwrite=overwrite, resume=resume)
     except KeyboardInterrupt:
-        kept = f"; go on with --out {out} --resume" if out and (Path(out) / CHECKPOINT).exists() else ""
-        click.echo(f"geocosserat: interrupted{kept}", err=True)
+        if not out or not (Path(out) / CHECKPOINT).exists():
+            raise
+        click.echo(f"geocosserat: interrupted; go on with --out {out} --resume", err=True)
         sys.exit(NOT_REACHED)
     if as_json:
         _print_json(result.fields)
@@ -170,16 +174,14 @@ def stability(
 
 
 def _reached(find: Callable[[], Found]) -> Found:
-    """What is found; ends with code 3 if nothing is, or if it is interrupted."""
+    """What is found; ends with code 3 if nothing is."""
     from geocosserat.conductor.equilibrium import NotReached
 
     try:
         return find()
-    except KeyboardInterrupt:
-        click.echo("geocosserat: interrupted", err=True)
     except NotReached as error:
         click.echo(f"geocosserat: not reached: {error}", err=True)
-    sys.exit(NOT_REACHED)
+        sys.exit(NOT_REACHED)
 
 
 @main.command()
@@ -202,17 +204,14 @@ def cost(
 ) -> None:
     """What accuracy costs in time: SCENE computed in many ways, each timed."""
     chosen = [name.strip() for name in methods.split(",")]
-    try:
-        found = measure_cost(
-            scene, out, settings=settings, methods=chosen, seconds=seconds, overwrite=overwrite
-        )
-    except KeyboardInterrupt:
-        click.echo("geocosserat: interrupted", err=True)
-        sys.exit(NOT_REACHED)
+    found = measure_cost(scene, out, settings=settings, methods=chosen, seconds=seconds, overwrite=overwrite)
     if as_json:
         _print_json(found.fields)
     else:
         print_diagram(found.diagram, Console(), [str(file) for file in found.files])
+    if not found.reached:
+        click.echo(f"geocosserat: not reached: {found.reason}", err=True)
+        sys.exit(NOT_REACHED)
 
 
 @main.command()
@@ -265,11 +264,7 @@ def generate(scene: str, backend: str, out: str, settings: tuple[str, ...], over
 @_one_message
 def check(law: str, out: str | None, settings: tuple[str, ...], overwrite: bool, as_json: bool) -> None:
     """Is the constitutive law in LAW (a TOML file) passive? With a proof, or a counter-example that runs."""
-    try:
-        result = check_law(law, out, values=dict(map(_value, settings)), overwrite=overwrite)
-    except KeyboardInterrupt:
-        click.echo("geocosserat: interrupted", err=True)
-        sys.exit(NOT_REACHED)
+    result = check_law(law, out, values=dict(map(_value, settings)), overwrite=overwrite)
     if as_json:
         _print_json(result.fields)
     elif result.found is None:
@@ -302,12 +297,8 @@ def paper(html: str | None, overwrite: bool, as_json: bool) -> None:
     """Check every statement of the paper: verdict by verdict."""
     target = None if html is None else _claim_file(Path(html), "--html", overwrite)
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    try:
-        with progress("judging", unit="statements") as bar:
-            report = review_paper(lambda done, total: bar(done / total, done), min(cores, MOST_PROCESSES))
-    except KeyboardInterrupt:
-        click.echo("geocosserat: interrupted", err=True)
-        sys.exit(NOT_REACHED)
+    with progress("judging", unit="statements") as bar:
+        report = review_paper(lambda done, total: bar(done / total, done), min(cores, MOST_PROCESSES))
     files = []
     if target is not None:
         from geocosserat.referee.page import page

@@ -16,6 +16,7 @@ from geocosserat.discretisation.cells import POINTS, POWERS, Array, Twist, solve
 from geocosserat.discretisation.quaternions import of_rotation, of_unit_norm, product, turn
 from geocosserat.model.errors import InputError
 from geocosserat.model.expressions import Expression, evaluate, switch_times
+from geocosserat.model.features import leaves, pulses
 
 CELLS = 64
 """Cells to begin with: what lasts less than a thousandth of the whole time may be overlooked, if it does not switch."""
@@ -75,7 +76,11 @@ def course_of(
     def at(t: Array) -> Array:
         return np.stack([np.broadcast_to(evaluate(e, {**values, "t": t}), t.shape) for e in twist])
 
-    return follow(at, until, length, {t for e in twist for t in switch_times(e, until, values)})
+    breaks = {t for e in twist for t in switch_times(e, until, values)}
+    for e in twist:
+        if pulses(e, "t", until, values):
+            breaks |= set(leaves(e, "t", until, values))
+    return follow(at, until, length, breaks)
 
 
 def follow(twist: Twist, until: float, length: float, switches: Iterable[float] = ()) -> Course:

@@ -60,6 +60,7 @@ LIBRARIES = {
 DISTRIBUTION = {"flint": "python-flint", "mpl_toolkits": "matplotlib", "sksundae": "scikit-sundae"}
 LATE = {
     # who may import inside a function, and what
+    "__main__": ("geocosserat.cli",),  # listens for interrupts first
     "conductor": EVERYWHERE,
     "cli": EVERYWHERE,
     "results": ("matplotlib", "mpl_toolkits", "xarray"),
