@@ -151,8 +151,12 @@ def linearise(equations: FieldEquations) -> LinearEquations:
 
     Raises InputError as `base_of`.
     """
-    base = base_of(equations)
-    group, d, m = equations.group, base.dimension, len(base.frozen)
+    return about(base_of(equations))
+
+
+def about(base: Base) -> LinearEquations:
+    """The linear equations about that base."""
+    group, d, m = base.equations.group, base.dimension, len(base.frozen)
     unit = identity(d + m)
     eta, kept = Operator((unit[:d],)), Operator((unit[:d, list(base.frozen)] @ unit[d:],))
     turn = eta.slope() + group.ad(base.turn) @ eta

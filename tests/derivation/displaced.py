@@ -12,7 +12,6 @@ import sympy as sp
 from numpy.typing import NDArray
 
 from geocosserat.algebra.groups import SE2, SE3, Group
-from geocosserat.derivation.elimination import put_in
 from geocosserat.derivation.linear import linearise
 from geocosserat.derivation.notation import T, U, field, fields, is_field
 from geocosserat.derivation.orientation import rotation
@@ -22,7 +21,8 @@ from geocosserat.model.records import RodModel
 from geocosserat.model.scene import load_scene
 from tests.derivation.charted import SWEPT
 from tests.derivation.rods import RODS
-from tests.derivation.scenes import BASE, FROZEN, FULL, diagonal, effects, vector
+from tests.derivation.scenes import BASE, FROZEN, FULL, diagonal, vector
+from tests.derivation.test_effects import every
 
 Array = NDArray[Any]
 Numbers = dict[sp.Expr, sp.Expr]
@@ -52,7 +52,7 @@ SPATIAL_LAW = {
 }  # fmt: skip
 MODELS: dict[str, RodModel] = {
     **RODS,
-    **{f"{group.name} {name}": with_effect(group, e) for group in BASE for name, (e, _) in effects(group).items()},
+    **{f"{group.name} {name}": with_effect(group, e) for group in BASE for name, e in every(group).items()},
     **{f"{group.name} all effects": model for group, model in FULL.items()},
     **{f"{group.name} swept": model for group, model in SWEPT.items()},
     **{name: FROZEN[name] for name in list(FROZEN)[::4]},
@@ -102,6 +102,7 @@ class Displaced:
         group, held = equations.group, equations.model.held
         d = group.dimension
         self.equations, self.group = equations, group
+        self._known: dict[Any, Numbers] = {}
         self.E, self.E_u, self.V, self.eta, self.eta_u, self.eta_uu, self.eta_t = random(rng, 7, d)
         self.E[0] += 2
         for a in np.flatnonzero(held):
@@ -123,8 +124,10 @@ class Displaced:
 
     def at(self, size: Any) -> Numbers:
         """Numbers for all fields of the equations, of the rod displaced by ``size`` times the displacement."""
-        with mp.workdps(DIGITS):
-            return self._at(size)
+        if size not in self._known:
+            with mp.workdps(DIGITS):
+                self._known[size] = self._at(size)
+        return self._known[size]
 
     def _at(self, size: Any) -> Numbers:
         group, equations, hat = self.group, self.equations, self.group.hat
@@ -189,11 +192,3 @@ def _fields(pairs: Any) -> Numbers:
 def _number(x: sp.Expr) -> Any:
     with mp.workdps(DIGITS):
         return mp.mpf(str(x))
-
-
-def explicit(e: sp.Expr, functions: Numbers) -> sp.Expr:
-    """e where its fields are these functions of (u, t), at HERE."""
-    return precise(put_in(e, functions), {})
-
-
-__all__ = ["CLOSE", "DIGITS", "HERE", "MODELS", "Displaced", "explicit", "precise", "random"]
