@@ -11,7 +11,7 @@ from geocosserat.derivation.distribute import distributed
 from geocosserat.derivation.elimination import put_in
 from geocosserat.derivation.linear import Base
 from geocosserat.derivation.notation import T, U, is_field
-from geocosserat.derivation.operators import LinearSystem
+from geocosserat.derivation.operators import LinearSystem, between_steps
 from geocosserat.derivation.records import EndConditions
 from geocosserat.model.expressions import symbols
 
@@ -27,7 +27,7 @@ class KnownBase:
 
     def of(self, system: LinearSystem) -> LinearSystem:
         """The linear equations about this base."""
-        return system.each(lambda e: distributed(put_in(e, self.values).xreplace(self.still)))
+        return system.each(lambda e: distributed(between_steps(put_in(e, self.values).xreplace(self.still))))
 
 
 def known_base(base: Base) -> KnownBase | None:

@@ -129,5 +129,10 @@ def slope(e: sp.Expr) -> sp.Expr:
 
 
 def slope_by(e: sp.Expr, variable: sp.Expr) -> sp.Expr:
-    """The derivative by a coordinate or a field, between steps: what jumps there is no part of it."""
-    return e.diff(variable).replace(sp.DiracDelta, lambda *_: sp.S.Zero)
+    """The derivative by a coordinate or a field, between steps."""
+    return between_steps(e.diff(variable))
+
+
+def between_steps(e: sp.Expr) -> sp.Expr:
+    """e where nothing jumps: what the derivative of a step is at the step is no part of it."""
+    return e.replace(sp.DiracDelta, lambda *_: sp.S.Zero)

@@ -135,7 +135,8 @@ def test_the_rates_are_the_balance_less_friction(group: Group, frozen: tuple[str
     """Friction times each matrix of the solved equations is that of the balance, also where friction couples two."""
     d = group.dimension
     coupled = tuple(
-        vector(*("1 + u" if i == j else "b" if {i, j} == {0, d - 1} else 0 for j in range(d))) for i in range(d)
+        vector(*("1 + u" if i == j else f"b/{1 + i}" if {i, j} == {0, d - 1} else 0 for j in range(d)))
+        for i in range(d)
     )
     linear = linearise(derive(dataclasses.replace(BASE[group], friction=coupled, frozen=frozen)))
     solved = linear.motion
