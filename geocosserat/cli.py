@@ -216,7 +216,7 @@ def cost(
 
 @main.command()
 @click.argument("scene", type=click.Path())
-@click.option("--form", default="intrinsic", show_default=True, help="Which form of the equations.")
+@click.option("--form", default="intrinsic", show_default=True, help="intrinsic, coordinates, linearised or limit.")
 @click.option("--chart", metavar="NAME", help="Coordinates for --form coordinates, e.g. rotation-vector or euler.")
 @click.option("--latex", is_flag=True, help="Print LaTeX (for amsmath).")
 @SETTINGS

@@ -75,14 +75,13 @@ class System:
         ``rows``: the balance of each velocity. ``friction``: the coefficient of two of these.
         """
         system = self
-        for block in _coupled(tuple(rows), friction):
-            matrix = sp.Matrix([[friction(a, b) for b in block] for a in block])
-            if len(block) > _LARGEST_BLOCK and not all(e.is_Rational for e in matrix):
+        for block in coupled(tuple(rows), friction):
+            inverse = inverted(sp.Matrix([[friction(a, b) for b in block] for a in block]))
+            if inverse is None:
                 continue
             # what the left-hand sides hold besides these velocities goes to the right
             apart = dict.fromkeys(block, sp.S.Zero)
             pushes = sp.Matrix([e.right - put_in(e.left, apart) for e in (rows[v].equation for v in block)])
-            inverse = matrix.inv(method="ADJ") if len(block) <= _LARGEST_BLOCK else matrix.inv()
             values = dict(zip(block, (distributed(x) for x in inverse * pushes), strict=True))
             if not system._would_break(values, values.values()):
                 system = system._without([rows[v] for v in block], values, "friction")
@@ -140,6 +139,13 @@ def occur(e: sp.Expr) -> frozenset[sp.Expr]:
     return frozenset(f for f in e.atoms(sp.Function) if is_field(f))
 
 
+def inverted(matrix: sp.Matrix) -> sp.Matrix | None:
+    """The inverse of a regular matrix, None where it would be too long to be read."""
+    if matrix.rows > _LARGEST_BLOCK:
+        return matrix.inv() if all(e.is_Rational for e in matrix) else None
+    return matrix.inv(method="ADJ")
+
+
 def _put_in_equation(equation: Equation, values: Mapping[sp.Expr, sp.Expr]) -> Equation:
     if not (occur(equation.left) | occur(equation.right)).intersection(values):
         return equation
@@ -160,7 +166,7 @@ def _parted(equation: Equation, unknown: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
     return coefficient, rest
 
 
-def _coupled(fields: Vector, coefficient: Callable[[sp.Expr, sp.Expr], sp.Expr]) -> list[Vector]:
+def coupled(fields: Vector, coefficient: Callable[[sp.Expr, sp.Expr], sp.Expr]) -> list[Vector]:
     """The fields in groups that the coefficients couple, each in the given order."""
     groups: list[list[sp.Expr]] = []
     for f in fields:

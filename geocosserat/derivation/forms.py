@@ -11,6 +11,7 @@ from geocosserat.derivation.closure import closure
 from geocosserat.derivation.coordinate_form import coordinates
 from geocosserat.derivation.document import Document, Formula, Section
 from geocosserat.derivation.limit_form import limit_form
+from geocosserat.derivation.linear_form import linearised
 from geocosserat.derivation.records import FieldEquations
 
 
@@ -59,6 +60,7 @@ def intrinsic(equations: FieldEquations) -> Document:
 FORMS: Final[dict[str, Callable[[FieldEquations], Document]]] = {
     "intrinsic": intrinsic,
     "coordinates": coordinates,
+    "linearised": linearised,
     "limit": limit_form,
 }
 CHARTED: Final[dict[str, Callable[[FieldEquations, str | None], Document]]] = {"coordinates": coordinates}

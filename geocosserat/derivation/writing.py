@@ -170,6 +170,11 @@ def _parts(name: str) -> _Name | None:
     return _Name(found[1], found[2] + found[3])
 
 
+def _changed(base: str) -> tuple[bool, str]:
+    """Whether a letter stands for the small change of a field, dh of h, and of which."""
+    return (True, base[1:]) if base[:1] == "d" and base[1:] in _ALONE else (False, base)
+
+
 class Text(Script):
     """Plain text: with Greek letters, dots and primes, or ASCII (h1_t, v1_u)."""
 
@@ -188,8 +193,9 @@ class Text(Script):
         if not self.unicode:
             return name + ("_" + "t" * dots + "u" * primes if primes or dots else "")
         parts = _parts(name) or _Name(name, "")
-        dotted = unicodedata.normalize("NFC", greek_unicode.get(parts.base, parts.base) + _DOTS[dots])
-        return dotted + parts.index.translate(_LOW) + PRIME * primes
+        before, base = _changed(parts.base)
+        dotted = unicodedata.normalize("NFC", greek_unicode.get(base, base) + _DOTS[dots])
+        return ("δ" if before else "") + dotted + parts.index.translate(_LOW) + PRIME * primes
 
     def number(self, written: str) -> Written:
         return written, ATOM
@@ -223,16 +229,25 @@ class Latex(Script):
     _NAMED: Final = frozenset({"sin", "cos", "tan", "exp", "log", "tanh", "sinh", "cosh"})
 
     def name(self, name: str) -> str:
-        return self.field(name, 0, 0)
+        return self._lettered(_parts(name), name, 0, 0)
 
     def field(self, name: str, primes: int, dots: int) -> str:
         parts = _parts(name)
+        if parts is not None:
+            changed, base = _changed(parts.base)
+            before = r"\delta " if changed else ""
+            return before + self._lettered(_Name(base, parts.index), name, primes, dots)
+        return self._lettered(parts, name, primes, dots)
+
+    @staticmethod
+    def _lettered(parts: _Name | None, name: str, primes: int, dots: int) -> str:
         if parts is None:
             return r"\mathrm{" + name.replace("_", r"\_") + "}"
-        if parts.base in greek_unicode:
-            letter = tex_greek_dictionary.get(parts.base, rf"\{parts.base}")
+        base = parts.base
+        if base in greek_unicode:
+            letter = tex_greek_dictionary.get(base, rf"\{base}")
         else:
-            letter = parts.base if len(parts.base) == 1 else rf"\mathrm{{{parts.base}}}"
+            letter = base if len(base) == 1 else rf"\mathrm{{{base}}}"
         dotted = rf"\{'d' * dots}ot{{{letter}}}" if dots else letter
         return dotted + (f"_{{{parts.index}}}" if parts.index else "") + "'" * primes
 
