@@ -130,8 +130,8 @@ def modes_of(coarse: State | None, state: State, count: int = COUNT) -> Modes:
     standing, length = state.standing, state.standing.scene.model.length
     before = None if coarse is None else coarse.spectrum[0]
     changes = None if before is None else _changes(before, growth)
-    vanish = ZERO * standing.rate + (np.zeros(len(growth)) if changes is None else 10 * changes)
-    neutral = (np.abs(growth) <= vanish) & (np.abs(growth) < 1e-3 * standing.rate)
+    vanish = ZERO * standing.system.rate + (np.zeros(len(growth)) if changes is None else 10 * changes)
+    neutral = (np.abs(growth) <= vanish) & (np.abs(growth) < 1e-3 * standing.system.rate)
     shapes = []
     for i in range(min(count, len(growth))):
         shape = standing.displaced(state.rest.x, motions[:, i])
@@ -163,7 +163,7 @@ def _others(state: State, clock: Clock) -> list[Equilibrium]:
     standing = state.standing
     found = []
     with clock("solve"), progress("searching", unit="states") as report:
-        for rest in others(standing.system, state.rest, standing.spectrum, standing.same, standing.rate):
+        for rest in others(standing.system, state.rest, standing.spectrum, standing.same):
             found.append(State(standing, rest, state.estimated, rest.rounds))
             report(0.5, len(found))
     told = [_told(None, other, clock) for other in found]

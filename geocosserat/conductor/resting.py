@@ -66,7 +66,7 @@ class Stander:
             guess = standing.system.x if last is None else standing.from_mesh(last.standing, last.rest.x)
             try:
                 with self.clock("solve"):
-                    rest = find(standing.system, guess, standing.rate)
+                    rest = find(standing.system, guess)
             except NotAtRest as error:
                 failure = error
                 if len(standing.system.x) > LARGEST_BLIND:

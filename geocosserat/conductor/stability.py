@@ -150,7 +150,7 @@ def _looked(
     rods = Rods(scene, over, size, kernel_text)
     guess = rods.first.from_mesh(standing, x)
     rest = newton(rods.at(p).system, guess)
-    return Looked(rods, rods.spectrum, rods.first.rate, neutral), rest.x
+    return Looked(rods, rods.spectrum, rods.first.system.rate, neutral), rest.x
 
 
 def _walked(looked: Looked, path: Iterator[Spot], over: Over) -> tuple[list[Spot], tuple[Point, ...], str]:
@@ -235,7 +235,7 @@ def _map(scene: Scene, one: Over, two: Over, state: State) -> Map:
                 standing = rods.at(float(p))
                 try:
                     start = standing.system.x if x is None else x
-                    rest = find(standing.system, start, standing.rate)
+                    rest = find(standing.system, start)
                 except NotAtRest:
                     continue
                 x = rest.x

@@ -39,7 +39,7 @@ SAME = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Standing:
-    """A rod on a mesh, its kernel, the equations of its rest, and about how fast it relaxes (1 / time).
+    """A rod on a mesh, its kernel, and the equations of its rest.
 
     held: how small motions of a rod grow that an end holds, or drives; None of one that nothing does.
     """
@@ -49,7 +49,6 @@ class Standing:
     kernel: NativeRod | NumpyRod
     text: KernelText
     system: System
-    rate: float
     held: Held | None
 
     def poses(self, x: Array) -> Poses:
@@ -59,8 +58,8 @@ class Standing:
         """Growth rates and motions as `Linear.spectrum`, of the rod alone."""
         if self.held is not None:
             twist, _, _ = self.kernel.observe(0.0, self.system.state(x))
-            return self.held.spectrum(x, twist.T if self.held.driven else np.zeros_like(twist.T), self.rate)
-        growth, motions = linear.spectrum(self.rate)
+            return self.held.spectrum(x, twist.T if self.held.driven else np.zeros_like(twist.T), self.system.rate)
+        growth, motions = linear.spectrum(self.system.rate)
         kept = [i for i in range(len(growth)) if not self._strays(x, motions[:, i])]
         return growth[kept], motions[:, kept]
 
@@ -77,9 +76,9 @@ class Standing:
         if abs(one - other) > SAME * max(abs(one), abs(other)):
             return False
         growth = [self.spectrum(self.system.linear(z), z)[0] for z in (x, y)]
-        if any(np.abs(g).min() > SAME * self.rate for g in growth):
+        if any(np.abs(g).min() > SAME * self.system.rate for g in growth):
             return False  # nothing turns without resistance
-        return bool(np.abs(growth[0][:3] - growth[1][:3]).max() < 1e3 * SAME * self.rate)
+        return bool(np.abs(growth[0][:3] - growth[1][:3]).max() < 1e3 * SAME * self.system.rate)
 
     def displaced(self, x: Array, motion: Complex) -> Complex:
         """(nodes, space) how the nodes move with a motion (n,), complex as it is; per unit of it."""
@@ -165,7 +164,7 @@ def stand(scene: Scene, size: tuple[int, int], kernel_text: Callable[[RodStructu
     elif held:
         other, _, plain, its = _system(_plainly_dragged(_halted(scene)), size, kernel_text)
         motions = Held(other, plain, its, friction, driven=True)
-    return Standing(scene, rod, kernel, text, system, slowest(scene.model, friction), motions)
+    return Standing(scene, rod, kernel, text, system, motions)
 
 
 def _system(
@@ -178,7 +177,8 @@ def _system(
     kept, around = _mattering(rod)
     scale = tolerances(rod, 1.0, None, unit_of_energy(scene, rod, kernel))[kept]
     closure = Closed(rod) if scene.model.joined else None
-    return rod, text, kernel, System(kernel, consistent(kernel, 0.0, rod.state), kept, scale, around, closure)
+    rate = slowest(scene.model, friction_of(scene.model, rod.mesh, left_of_friction(scene.run)))
+    return rod, text, kernel, System(kernel, consistent(kernel, 0.0, rod.state), kept, scale, around, rate, closure)
 
 
 def _is_held(model: RodModel) -> bool:

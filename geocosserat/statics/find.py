@@ -6,14 +6,14 @@ from geocosserat.statics.path import Eased, begin, follow
 from geocosserat.statics.system import System
 
 
-def find(system: System, x: Array, rate: float) -> Rest:
+def find(system: System, x: Array) -> Rest:
     """The state of rest that is reached from x: by Newton's method; or where the rod relaxes to; or where the path
-    leads on which forces that hold it at x are taken away. rate: about how fast it relaxes (1 / time).
+    leads on which forces that hold it at x are taken away.
 
     Raises NotAtRest if none of them gets there, with what each met.
     """
     met = []
-    for name, way in (("at once", newton), ("relaxing", lambda s, x: relax(s, x, rate)), ("eased", _eased)):
+    for name, way in (("at once", newton), ("relaxing", relax), ("eased", _eased)):
         try:
             return way(system, x)
         except NotAtRest as error:

@@ -37,6 +37,10 @@ class Linear:
         J[: len(self.J)] -= rate * np.diag(self.moves.astype(float))
         return self.basis @ _solved(-J, self._rows(f))
 
+    def unmet(self, f: Array, step: Array) -> Array:
+        """(m + k,) what of f the step of Newton's method does not take away."""
+        return self._rows(f) + self._whole() @ (self.basis.T @ step)
+
     def bordered(self, column: Array, row: Array, corner: float, f: Array, g: float) -> tuple[Array, float]:
         """(d, e) with -J d - column e = f and row d + corner e = g; column and f are (n + k,), row and d (n,)."""
         A = np.block([[-self._whole(), -self._rows(column)[:, None]], [(row @ self.basis)[None], np.array([[corner]])]])

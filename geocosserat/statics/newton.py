@@ -17,6 +17,10 @@ SMALL, ROUND_OFF = 1e-8, 1e-14
 
 SHORTEST = 1e-4
 
+LEFT = 1e-3
+"""Speed in natural sizes, relative to the rate at which a rod relaxes, that a rest may have in directions in which
+nothing resists: what a scheme leaves of balances that are exact in theory."""
+
 SLOWEST = 1e-2
 """Rate of the longest steps of relaxation, relative to that at which the rod relaxes: a rod that nothing keeps from
 turning as a whole drifts by as much of its imbalance as one over it."""
@@ -54,11 +58,14 @@ def newton(system: System, x: Array, most: int = 50) -> Rest:
     for rounds in range(1, most + 1):
         linear = system.linear(x)
         try:
-            step = linear.step(system.residual(x))
+            residual = system.residual(x)
+            step = linear.step(residual)
         except np.linalg.LinAlgError as error:
             raise NotAtRest(str(error)) from error
         now = size(step)
         if now < ROUND_OFF or (now < SMALL and now > 0.1 * last):
+            if size(linear.unmet(residual, step)) > LEFT * system.rate:
+                raise NotAtRest("what is left of the forces is in directions in which nothing gives way")
             return Rest(x, linear, now, rounds)
         x = system.moved(x, step) if now < SMALL else _cut(system, x, linear, step)
         last = now
@@ -81,14 +88,12 @@ def _cut(system: System, x: Array, linear: Linear, step: Array) -> Array:
     raise NotAtRest("no step of Newton's method brings the rod nearer to rest")
 
 
-def relax(system: System, x: Array, rate: float, most: int = 150) -> Rest:
+def relax(system: System, x: Array, most: int = 150) -> Rest:
     """The state of rest that the rod settles to from x: implicit Euler steps, ever longer ones, then Newton's method.
-
-    rate: about how fast it relaxes (1 / time).
 
     Raises NotAtRest if it does not settle.
     """
-    now = max(size(system.residual(x)) / 0.1, rate)
+    now = max(size(system.residual(x)) / 0.1, system.rate)
     for _ in range(most):
         linear, f = system.linear(x), system.residual(x)
         try:
@@ -99,8 +104,8 @@ def relax(system: System, x: Array, rate: float, most: int = 150) -> Rest:
         except np.linalg.LinAlgError as error:
             raise NotAtRest(str(error)) from error
         x = system.moved(x, step)
-        if size(step) < 1e-3 and now <= SLOWEST * rate:
+        if size(step) < 1e-3 and now <= SLOWEST * system.rate:
             with suppress(NotAtRest):
                 return newton(system, x)
-        now = max(0.4 * now, SLOWEST * rate)
+        now = max(0.4 * now, SLOWEST * system.rate)
     raise NotAtRest(f"the rod does not settle in {most} steps")

@@ -23,7 +23,7 @@ Same = Callable[[Array, Array], bool]
 
 
 def others(
-    system: System, first: Rest, spectrum: Spectrum, same: Same, rate: float, most: int = 12
+    system: System, first: Rest, spectrum: Spectrum, same: Same, most: int = 12
 ) -> Iterator[Rest]:
     """States of rest besides the first one, as they are found, `most` at most. same: whether two states are one.
 
@@ -35,7 +35,7 @@ def others(
     while waiting:
         rest = waiting.pop(0)
         for seed, settles in _pushed(system, rest, *spectrum(rest.linear, rest.x)):
-            for found in _reached(system, seed, settles, known, rate):
+            for found in _reached(system, seed, settles, known):
                 if any(same(found.x, other.x) for other in known):
                     continue
                 if len(known) > most:
@@ -54,11 +54,11 @@ def _pushed(system: System, rest: Rest, growth: Complex, motions: Complex) -> It
                 yield seed, growth[i].real > 0 or push == PUSHES[-1]
 
 
-def _reached(system: System, seed: Array, settles: bool, known: list[Rest], rate: float) -> Iterator[Rest]:
+def _reached(system: System, seed: Array, settles: bool, known: list[Rest]) -> Iterator[Rest]:
     """States that are reached from there."""
     if settles:
         with suppress(NotAtRest):
-            yield relax(system, seed, rate)
+            yield relax(system, seed)
     with suppress(NotAtRest):
         yield _deflated(system, seed, [rest.x for rest in known])
 
@@ -77,7 +77,7 @@ def _deflated(system: System, x: Array, known: list[Array], most: int = 30) -> R
         stronger = sum(-2 * float(g @ step) / (s * (1 + s)) for g, s in zip(gaps, squares, strict=True))
         step = step / (1 - stronger) if abs(1 - stronger) > 1e-12 else step
         now = size(step)
-        x = system.moved(x, step * min(1.0, REACH / now))
+        x = system.moved(x, step * (REACH / max(now, REACH)))
         if now < SMALL:
             return newton(system, x)
     raise NotAtRest(f"no other state was found in {most} steps")

@@ -33,7 +33,7 @@ class System:
 
     start (size,): a state, from which what does not matter is taken. kept (n,): indices of the entries that matter.
     scale (n,): their natural sizes; x = y[kept] / scale. round (n,): True for entries that form a unit vector, which
-    every step leaves one. closure: of a rod whose ends are joined.
+    every step leaves one. rate: about how fast the rod relaxes (1 / time). closure: of a rod whose ends are joined.
     """
 
     kernel: Kernel
@@ -41,6 +41,7 @@ class System:
     kept: NDArray[np.intp]
     scale: Array
     round: Mask
+    rate: float
     closure: Closure | None = None
 
     @property
