@@ -65,20 +65,13 @@ class State:
         return np.stack(found)
 
 
-def _blocks(state: State, stress: Array) -> tuple[Array, Array, Array]:
-    ad, coad, turned = (np.array(a, dtype=float) for a in blocks(state.turn(stress), stress))
-    return ad, coad, turned
-
-
 def _balance(state: State, stress: Array) -> Array:
-    turn = state.turn(stress)
-    force = np.cross(turn[3:], stress[:3])
-    return -np.concatenate([force, np.cross(turn[3:], stress[3:]) + np.cross(turn[:3], stress[:3])])
+    return np.asarray(-blocks(state.turn(stress), stress)[1] @ stress)
 
 
 def _system(state: State, stress: Array) -> Array:
     """The matrix (2 parts, 2 parts) of Y' = (matrix + growth ...) Y, Y = (eta, sigma)."""
-    ad, coad, turned = _blocks(state, stress)
+    ad, coad, turned = blocks(state.turn(stress), stress)
     compliance = np.diag(state.compliance)
     pick = np.ix_(state.parts, state.parts)
     zero = np.zeros((len(state.parts),) * 2)
@@ -126,7 +119,8 @@ def growths(state: State, number: int, degree: int = 24) -> Array:
     for k, row in enumerate(_rows(state, stress[-1])):
         for at, condition, point in ((k * points, np.eye(size)[k], 0), ((half + k) * points + degree, row, degree)):
             left[at], right[at] = np.kron(condition, np.eye(points)[point]), 0.0
-    inverse = np.linalg.eigvals(np.linalg.solve(left, right))
+    moving = np.any(right != 0.0, axis=0)  # the rest of the product's columns vanish
+    inverse = np.linalg.eigvals(np.linalg.solve(left, right[:, moving])[moving])
     found = 1.0 / inverse[np.abs(inverse) > 1e-7 * np.abs(inverse).max()]
     return np.asarray(found[np.argsort(-found.real)][:number].real)
 

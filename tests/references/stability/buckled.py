@@ -20,7 +20,9 @@ begin at higher loads and are not given. Near the buckling load P_c, where P eta
     alpha^2 ~ (P - P_c) (8 / (3 beta)) d ln(omega) / dP,   beta = (1 + 4 c P) / (6 (1 + c P)),   omega^2 = P eta / k3,
     y ~ 2 L eta alpha / pi,
 
-so the pitchfork stands upright if 1 + 4 c P_c > 0: a rod that shortens easily and does not shear snaps.
+so the pitchfork stands upright if 1 + 4 c P_c > 0: a rod that shortens easily and does not shear snaps. Its branches
+start downwards, unstable, and turn back at a fold, where L does not change with p; between that load and P_c there are
+two shapes to each side, a small and a large one.
 
 Source: A. E. H. Love, *Mathematical Theory of Elasticity*, articles 262-263; A. Magnusson, M. Ristinmaa, C. Ljung, Int.
 J. Solids Struct. 38 (2001) 8441 (extensible); the expansion is Lindstedt's for theta'' = -omega^2 (theta - beta
@@ -30,10 +32,10 @@ Dimensions: P, k1, k2 force; k3 force x length^2.
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from functools import partial
 
-import mpmath
 import numpy as np
 import numpy.typing as npt
 from scipy.integrate import solve_ivp
@@ -43,6 +45,9 @@ from tests.references.stability import columns
 from tests.references.stability.straight import Rod
 
 Array = npt.NDArray[np.float64]
+POINTS = 400
+SINES = np.sin(0.5 * np.pi * np.arange(POINTS + 1) / POINTS)
+SHARES = 0.5 * np.pi / POINTS * np.array([0.5, *[1.0] * (POINTS - 1), 0.5])
 
 
 @dataclass(frozen=True)
@@ -55,41 +60,59 @@ class Tip:
     bend: float
 
 
-def _compliances(rod: Rod) -> tuple[Any, Any]:
-    return mpmath.mpf(1) / rod.k1, mpmath.mpf(1) / rod.k2
+def _integral(rod: Rod, load: float, p: float, weight: Callable[[Array], npt.ArrayLike]) -> float:
+    """sqrt(k3 / P) times the integral of weight(cos(theta)) against the u of one branch.
+
+    By the trapezoidal rule, which is exact to rounding: the integrand is smooth and even about both ends.
+    """
+    c = 1.0 / rod.k2 - 1.0 / rod.k1
+    square = (p * SINES) ** 2
+    density = weight(1.0 - 2.0 * square) / np.sqrt((1.0 - square) * (1.0 + c * load * (1.0 - p * p - square)))
+    return math.sqrt(rod.bend / load) * float(SHARES @ density)
 
 
-def _elliptic(rod: Rod, load: Any, p: Any, weight: Any) -> Any:
-    """sqrt(k3 / P) times the integral of weight(cos(theta)) against the u of one branch."""
-    slack, shear = _compliances(rod)
-    c = shear - slack
-
-    def density(phi: Any) -> Any:
-        square = (p * mpmath.sin(phi)) ** 2
-        return weight(1 - 2 * square) / mpmath.sqrt((1 - square) * (1 + c * load * (1 - p * p - square)))
-
-    return mpmath.sqrt(mpmath.mpf(rod.bend) / load) * mpmath.quad(density, [0, mpmath.pi / 2])
+def _slope(rod: Rod, load: float, p: float) -> float:
+    """d/dp of the length, times sqrt(P / k3)."""
+    c = 1.0 / rod.k2 - 1.0 / rod.k1
+    first, second = 1.0 - (p * SINES) ** 2, 1.0 + c * load * (1.0 - p * p * (1.0 + SINES**2))
+    change = SINES**2 * second + c * load * (1.0 + SINES**2) * first
+    return float(SHARES @ (p * change / (first * second) ** 1.5))
 
 
-def tip(rod: Rod, load: float, side: float = 1.0) -> Tip:
-    """The buckled rod that bends to one side all along, by elliptic integrals; `side` is the sign of y."""
+def fold(rod: Rod) -> tuple[float, float]:
+    """The least load (force) that can hold a rod that snaps bent, and p = sin(angle / 2) there."""
+    if steepness(rod) > 0.0:
+        raise ValueError("expected a rod that snaps, found one whose buckled states begin at its buckling load")
+    low = 0.5 * columns.dead_load(rod)
+    high = 0.5 / (1.0 / rod.k1 - 1.0 / rod.k2)  # up to where a straight rod yields more and more to a load
+
+    def load(p: float) -> float:
+        """At which p belongs to the rod's length."""
+        missing = partial(_integral, rod, p=p, weight=np.ones_like)
+        return float(brentq(lambda x: missing(x) - rod.length, low, high, xtol=1e-15, rtol=1e-15))
+
+    p = brentq(lambda x: _slope(rod, load(x), x), 0.01, 0.8, xtol=1e-14)
+    return load(p), float(p)
+
+
+def tip(rod: Rod, load: float, side: float = 1.0, small: bool = False) -> Tip:
+    """The buckled rod that bends to one side all along, by elliptic integrals; `side` is the sign of y.
+
+    Of two such states below the buckling load of a rod that snaps the larger, unless the `small` one is asked for.
+    """
+    low, high = 1e-8, 1.0 - 1e-8
     if load <= columns.dead_load(rod):
-        raise ValueError(f"expected a load beyond {columns.dead_load(rod)}, found {load}")
-    with mpmath.workdps(30):
-        force, (slack, shear) = mpmath.mpf(load), _compliances(rod)
-        c = shear - slack
-        p = mpmath.findroot(
-            lambda p: _elliptic(rod, force, p, lambda cosine: 1) - rod.length,
-            (mpmath.mpf(10) ** -8, 1 - mpmath.mpf(10) ** -8),
-            solver="anderson",
-            tol=1e-50,
-            verify=False,
-        )
-        x = _elliptic(rod, force, p, lambda t: t - force * (t * t * slack + (1 - t * t) * shear))
-        least = 1 - 2 * p * p
-        bend = mpmath.sqrt(2 * force / rod.bend * (1 - least) * (1 + c * force * (1 + least) / 2))
-        angle = 2 * mpmath.asin(p)
-        return Tip(float(x), side * float(rod.bend / force * bend), side * float(angle), side * float(bend))
+        least, between = fold(rod) if steepness(rod) < 0.0 else (columns.dead_load(rod), 0.0)
+        if load <= least:
+            raise ValueError(f"expected a load beyond {least}, found {load}")
+        low, high = (low, between) if small else (between, high)
+    slack, shear = 1.0 / rod.k1, 1.0 / rod.k2
+    p = brentq(lambda x: _integral(rod, load, x, np.ones_like) - rod.length, low, high, xtol=1e-16, rtol=1e-15)
+    x = _integral(rod, load, p, lambda t: t - load * (t * t * slack + (1.0 - t * t) * shear))
+    least_cosine = 1.0 - 2.0 * p * p
+    stiffening = 1.0 + 0.5 * (shear - slack) * load * (1.0 + least_cosine)
+    bend = 2.0 * p * math.sqrt(load / rod.bend * stiffening)
+    return Tip(x, side * rod.bend / load * bend, side * 2.0 * math.asin(p), side * bend)
 
 
 def _integrated(rod: Rod, load: float, bend: float) -> Array:

@@ -6,6 +6,7 @@ from tests.references.stability import bend45, bent, buckled, columns
 from tests.references.stability.straight import Rod
 
 THICK = Rod(1.0, 40.0, 16.0, 1.0, 2.0, 0.02)
+SNAPPING = Rod(1.0, 10.2, 1000.0, 1.0, 2.0, 0.02)  # shortens easily, hardly shears
 
 
 @dataclass(frozen=True)
@@ -13,7 +14,8 @@ class Equilibrium:
     """A state of rest of `examples/stability/<scene>.toml` with `settings`.
 
     tip: its place (length). growth: the leading eigenvalue (1 / time), negative if it is stable. branches: how many
-    equilibria there are, this one, its mirror image and the straight one included.
+    equilibria there are, this one, its mirror image and the straight one included. small: of a rod that snaps the
+    smaller one of the two to this side.
     """
 
     scene: str
@@ -21,6 +23,7 @@ class Equilibrium:
     growth: float
     settings: dict[str, float] = field(default_factory=dict)
     branches: int = 1
+    small: bool = False
 
 
 def all_equilibria() -> tuple[Equilibrium, ...]:
@@ -32,6 +35,10 @@ def all_equilibria() -> tuple[Equilibrium, ...]:
                     -4.7230231775871125, {"load": 3.5}, branches=3),
         Equilibrium("column_buckled", (-0.3371516352554362, 0.7602309829656304),
                     -10.299864857224746, {"load": 6.0}, branches=3),
+        Equilibrium("column_snap", (0.275556911120411, 0.6980598358675403), -2.9399572010550634, {"load": 3.85},
+                    branches=5),
+        Equilibrium("column_snap", (0.6039110758622397, 0.20841430169777586), 0.5674045967928403, {"load": 3.85},
+                    branches=5, small=True),
         Equilibrium("bend45", (58.53593262077532, 22.112614520452055, 40.48026158044724),
                     -0.18485846807462475, {"load": 300.0, "torsion": 702885.0}),
         Equilibrium("bend45", (51.969717355199926, 18.36927564287973, 48.704788627668385),
@@ -43,11 +50,11 @@ def all_equilibria() -> tuple[Equilibrium, ...]:
     )  # fmt: skip
 
 
-def column(load: float) -> tuple[buckled.Tip, bent.State]:
-    """The buckled column of the scene, towards positive y."""
-    tip = buckled.tip(THICK, load)
-    stiffness, friction = (40.0, 16.0, 1.0, 1.0, 1.0, 1.0), (1.0, 2.0, 1.0, 1.0, 1.0, 0.02)
-    base = (-load, 0.0, 0.0, 0.0, 0.0, tip.bend)
+def column(load: float, rod: Rod = THICK, small: bool = False) -> tuple[buckled.Tip, bent.State]:
+    """A buckled column, towards positive y."""
+    tip = buckled.tip(rod, load, small=small)
+    stiffness, friction = (rod.k1, rod.k2, 1.0, 1.0, 1.0, rod.bend), (1.0, rod.friction2, 1.0, 1.0, 1.0, rod.friction5)
+    base = (-load, 0.0, 0.0, 0.0, 0.0, rod.bend * tip.bend)
     return tip, bent.State(1.0, stiffness, friction, (1.0, 0.0, 0.0, 0.0, 0.0, 0.0), base, bent.PLANE)
 
 

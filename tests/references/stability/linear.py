@@ -94,7 +94,8 @@ def growths(problem: Problem, number: int, degree: int = 28) -> Complex:
     for component, row in zip(problem.start, np.array(problem.end, dtype=complex), strict=True):
         at = component * (degree + 1) + degree
         left[at], right[at] = np.kron(row, np.eye(degree + 1)[degree]), 0.0
-    inverse = np.linalg.eigvals(np.linalg.solve(left - SHIFT * right, right))
+    moving = np.any(right != 0.0, axis=0)  # the rest of the product's columns vanish
+    inverse = np.linalg.eigvals(np.linalg.solve(left - SHIFT * right, right[:, moving])[moving])
     found = SHIFT + 1.0 / inverse[np.abs(inverse) > 1e-7 * np.abs(inverse).max()]
     return np.asarray(found[np.argsort(-found.real)][:number])
 

@@ -42,7 +42,7 @@ import numpy.typing as npt
 from scipy.linalg import eig
 from scipy.optimize import brentq
 
-from tests.references.stability.linear import Matrix, Problem
+from tests.references.stability.linear import Problem
 
 Array = npt.NDArray[np.float64]
 
@@ -62,15 +62,15 @@ class Ring:
         return 1.0 / np.array(self.stiffness)
 
 
-def hat(a: Any) -> Any:
+def hat(a: Array) -> Array:
     """The matrix of a x."""
-    return np.array([[0, -a[2], a[1]], [a[2], 0, -a[0]], [-a[1], a[0], 0]], dtype=object)
+    return np.array([[0.0, -a[2], a[1]], [a[2], 0.0, -a[0]], [-a[1], a[0], 0.0]])
 
 
-def blocks(turn: Any, stress: Any) -> tuple[Matrix, Matrix, Matrix]:
+def blocks(turn: Array, stress: Array) -> tuple[Array, Array, Array]:
     """ad_E, ad*_E and the matrix of e -> ad*_e Sigma, each (6, 6)."""
     h, bend, force, moment = hat(turn[:3]), hat(turn[3:]), hat(stress[:3]), hat(stress[3:])
-    zero = np.zeros((3, 3), dtype=object)
+    zero = np.zeros((3, 3))
     return (
         np.block([[bend, h], [zero, bend]]),
         np.block([[bend, zero], [h, bend]]),
@@ -99,11 +99,11 @@ def state(ring: Ring, twist: float) -> tuple[Array, Array]:
     return found(brentq(miss, -1.0, 1.0, xtol=1e-16, rtol=1e-15) if c[2] > 0.0 else 0.0)
 
 
-def _constant(ring: Ring, twist: float) -> tuple[Matrix, Matrix]:
+def _constant(ring: Ring, twist: float) -> tuple[Array, Array]:
     """The 12 x 12 matrices of Y' = (constant + growth growing) Y, Y = (eta, sigma)."""
     ad, coad, turned = blocks(*state(ring, twist))
     compliance = np.diag(ring.compliance)
-    zero = np.zeros((6, 6), dtype=object)
+    zero = np.zeros((6, 6))
     constant = np.block([[-ad, compliance], [zero, -coad - turned @ compliance]])
     return constant, np.block([[zero, zero], [np.diag(ring.friction), zero]])
 
@@ -112,12 +112,13 @@ def determinant(ring: Ring, twist: float, n: int, growth: Any) -> Any:
     """What vanishes at a growth with n waves."""
     constant, growing = _constant(ring, twist)
     wave = mpmath.mpc(0, 2 * n) * mpmath.pi / ring.length
-    return mpmath.det(mpmath.matrix((constant + growing * growth - wave * np.eye(12)).tolist()))
+    matrix = constant.astype(object) + growing.astype(object) * growth - wave * np.eye(12).astype(object)
+    return mpmath.det(mpmath.matrix(matrix.tolist()))
 
 
 def growths(ring: Ring, twist: float, n: int) -> npt.NDArray[np.complex128]:
     """All with n waves, largest real part first, to about 1e-9 of the largest."""
-    constant, growing = (np.array(a, dtype=complex) for a in _constant(ring, twist))
+    constant, growing = _constant(ring, twist)
     wave = 2j * math.pi * n / ring.length
     found = eig(wave * np.eye(12) - constant, growing, right=False, homogeneous_eigvals=True)
     finite = np.abs(found[1]) > 1e-10 * np.abs(found).max()
@@ -153,6 +154,4 @@ def classical(n: int, bend: float, twist_stiffness: float) -> float:
 def held(ring: Ring, twist: float) -> Problem:
     """The ring whose ends are both clamped at one place."""
     constant, growing = _constant(ring, twist)
-    rows = np.zeros((6, 12), dtype=object)
-    rows[:, :6] = np.eye(6)
-    return Problem(ring.length, (constant,), growing, tuple(range(6, 12)), rows)
+    return Problem(ring.length, (constant,), growing, tuple(range(6, 12)), np.eye(6, 12))

@@ -40,6 +40,7 @@ class Value:
 
 # the rods of the scenes: length, k1, k2, bend; frictions across and of tilting
 THICK = Rod(1.0, 40.0, 16.0, 1.0, 2.0, 0.02)
+SNAPPING = Rod(1.0, 10.2, 1000.0, 1.0, 2.0, 0.02)
 STIFF = Rod(1.0, 200.0, 80.0, 1.0, 2.0, 0.02)
 BENDING = Rod(1.0, math.inf, math.inf, 1.0, 2.0, 0.0)
 RING = michell.Ring(1.0, (2000.0, 800.0, 800.0, 0.8, 1.0, 1.0), (1.0, 2.0, 2.0, 0.05, 0.02, 0.02), 2.0 * math.pi)
@@ -47,6 +48,7 @@ THIN_RING = michell.Ring(1.0, (math.inf, math.inf, math.inf, 0.8, 1.0, 1.0), (1.
 
 FAMILIES: dict[str, Callable[[Any], Problem]] = {
     "column_dead": lambda load: columns.loaded(THICK, load),
+    "column_snap": lambda load: columns.loaded(SNAPPING, load),
     "column_dead_limit": lambda load: columns.loaded(BENDING, load),
     "column_dead_spatial": lambda load: columns.loaded(THICK, load),  # in its softer plane
     "column_pinned": lambda growth: columns.grown(THICK, growth, "pinned"),
@@ -74,6 +76,8 @@ def all_values() -> tuple[Value, ...]:
               ((2.0, -0.6845232492198813), (2.5, 0.6014926548359416))),
         Value("column_dead_limit", "load", (1.0, 4.0), 2.4674011002723395, 0.0,
               ((2.0, -1.2496432839242515), (3.0, 1.4793284583683968))),
+        Value("column_snap", "load", (3.0, 4.5), 4.093316234969169, 0.0,
+              ((3.85, -0.3389030736583896), (4.3, 0.2650790225243873))),
         Value("column_dead_spatial", "load", (1.0, 4.0), 2.273560670654354, 0.0,
               ((2.0, -0.6845232492198813), (2.5, 0.6014926548359416))),
         Value("column_pinned", "growth", (1.0, 1.3), 1.1724191778237174, 0.0,

@@ -68,6 +68,24 @@ def test_a_rod_that_shortens_easily_snaps() -> None:
     assert buckled.steepness(SHEARED) > 0.0
 
 
+def test_a_rod_that_snaps_has_two_shapes_to_a_side_above_its_fold() -> None:
+    """They agree with shooting, and meet at the fold as the root of the distance from it."""
+    rod = Rod(1.0, 10.2, 1000.0)
+    least, p = buckled.fold(rod)
+    gaps = []
+    for step in (1e-3, 4e-3):
+        small, large = (buckled.tip(rod, least + step, small=which) for which in (True, False))
+        assert small.angle < 2.0 * math.asin(p) < large.angle
+        again = buckled.shot(rod, least + step, small)
+        assert (small.x, small.y) == pytest.approx((again.x, again.y), abs=2e-11)
+        gaps.append(large.angle - small.angle)
+    assert gaps[1] == pytest.approx(2.0 * gaps[0], rel=1e-2)
+    with pytest.raises(ValueError, match="beyond"):
+        buckled.tip(rod, least - 1e-3)
+    with pytest.raises(ValueError, match="snaps"):
+        buckled.fold(SHEARED)
+
+
 def test_there_is_no_buckled_shape_below_the_load() -> None:
     """The request is refused."""
     with pytest.raises(ValueError, match="beyond"):

@@ -29,7 +29,7 @@ def test_without_coupling_it_is_the_plain_rod() -> None:
 def test_it_does_not_matter_which_side_is_coupled() -> None:
     """A law and its transpose have the same growths, however large the coupling."""
     for a in (5.0, 20.0):
-        one, other = (linear.growths(odd.free(_law(**{side: a}), FRICTION), 5) for side in ("c12", "c21"))
+        one, other = (linear.growths(odd.free(_law(**{side: a}), FRICTION), 5, 22) for side in ("c12", "c21"))
         np.testing.assert_allclose(np.sort(one.real), np.sort(other.real), rtol=1e-8)
         np.testing.assert_allclose(np.sort(abs(one.imag)), np.sort(abs(other.imag)), rtol=1e-8, atol=1e-7)
 
@@ -37,9 +37,9 @@ def test_it_does_not_matter_which_side_is_coupled() -> None:
 @pytest.mark.parametrize("sides", [("c12", "c21"), ("c02", "c20"), ("c01", "c10")])
 def test_an_antisymmetric_coupling_never_makes_it_grow(sides: tuple[str, str]) -> None:
     """While the symmetric part of the law is positive all growths decay."""
-    for a in (3.0, 30.0, 100.0):
+    for a in (3.0, 50.0):
         law = _law(**{sides[0]: a, sides[1]: -a})
-        assert linear.growths(odd.free(law, FRICTION), 1)[0].real < 0.0
+        assert linear.growths(odd.free(law, FRICTION), 1, 22)[0].real < 0.0
 
 
 def test_stretch_that_bending_drives_does_not_act_back() -> None:
@@ -50,7 +50,7 @@ def test_stretch_that_bending_drives_does_not_act_back() -> None:
 
 def test_a_one_sided_coupling_flutters_beyond_the_bound_on_one_side_only() -> None:
     """Of F2 = k2 h2 + a Pi from a = 11.08 on, beyond 2 sqrt(k2 k3) = 8; not for a < 0."""
-    value, frequency = linear.loss(lambda a: odd.free(_law(c12=float(a)), FRICTION), [1.0, 8.0, 15.0])
+    value, frequency = linear.loss(lambda a: odd.free(_law(c12=float(a)), FRICTION), [8.0, 15.0], degree=20)
     assert value > 8.0
     assert frequency > 1.0
     assert linear.growths(odd.free(_law(c12=-60.0), FRICTION), 1)[0].real < 0.0

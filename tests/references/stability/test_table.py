@@ -20,10 +20,10 @@ def _seen(entry: Value, value: float, frequency: float) -> float:
 def test_collocation_finds_the_loss_and_the_determinant_the_value(entry: Value) -> None:
     """The first loss in the interval, by collocation, is refined to the number in the table by the determinant."""
     family = FAMILIES[entry.scene]
-    first, swing = linear.loss(family, np.linspace(*entry.interval, 5))
+    first, swing = linear.loss(family, np.linspace(*entry.interval, 5), degree=24)
     value, frequency = linear.flutter(family, first, swing) if swing else (linear.divergence(family, first), 0.0)
-    assert first == pytest.approx(value, rel=1e-8)
-    assert swing == pytest.approx(frequency, rel=1e-8)
+    assert first == pytest.approx(value, rel=1e-7)
+    assert swing == pytest.approx(frequency, rel=1e-7)
     assert value == pytest.approx(entry.value, rel=1e-14)
     assert _seen(entry, value, frequency) == pytest.approx(entry.frequency, rel=1e-13)
 
@@ -35,7 +35,7 @@ def test_the_growths_are_zeros_of_the_determinant_and_leading(entry: Value) -> N
     assert before < entry.value < after
     assert decay.real < 0.0 < growth.real
     for parameter, expected in entry.growths:
-        found = linear.leading(FAMILIES[entry.scene](parameter), degree=18 if entry.scene == "ring_held" else 28)
+        found = linear.leading(FAMILIES[entry.scene](parameter), degree=18 if entry.scene == "ring_held" else 24)
         if entry.over == "spin":
             found = whirling.seen(found, parameter)
         assert abs(found - expected) < 1e-12 * abs(expected)

@@ -8,12 +8,13 @@ from tests.references.stability.straight import Rod
 from tests.references.stability.table import value
 
 
-def test_the_series_agrees_with_collocation_of_other_variables() -> None:
-    """Force and moment of `whirl`, there integrated from tip to base, give the same threshold: to 1e-9."""
+def test_the_series_agrees_with_the_determinant_of_other_variables() -> None:
+    """At the threshold the equations of `whirl`, integrated in the world's force and moment, have the same mode."""
     rod = Rod(1.3, 50.0, 30.0, 1.2, 0.7, 0.05)
-    other = whirl.threshold(whirl.Rod(1.3, 30.0, 1.2, 0.7, 0.02, 0.05, 0.0))
-    found = linear.flutter(lambda spin: whirling.spun(rod, 0.02, spin), *other)
-    assert found == pytest.approx(other, rel=1e-9)
+    first = linear.loss(lambda spin: whirling.spun(rod, 0.02, spin), [200.0, 400.0], degree=22)
+    spin, velocity = linear.flutter(lambda spin: whirling.spun(rod, 0.02, spin), *first)
+    other = whirl.Rod(1.3, 30.0, 1.2, 0.7, 0.02, 0.05, spin)
+    assert abs(whirl.refined(other, 1.001j * velocity) - 1j * velocity) < 1e-9 * velocity
 
 
 def test_the_classical_threshold_is_the_published_one() -> None:
