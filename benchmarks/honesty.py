@@ -8,7 +8,9 @@ estimate over the true error; the time that planning took over that of the run t
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -97,55 +99,101 @@ def at(scene: Scene, elements: int, degree: int, rtol: float) -> tuple[Mesh, np.
     return (discretise(scene, elements, degree).mesh, run.solution.position[-1]) if run.reached else None
 
 
-def measure(accuracies: tuple[float, ...]) -> Iterator[tuple[str, float, float, float, float, str]]:
-    """Scene, accuracy, error over that, estimate over the error, planning over the run, and how it was computed."""
+@dataclass(frozen=True)
+class Row:
+    """A scene at an accuracy: what came of it (COMPUTED, NOT_REACHED, REFUSED or LEFT_OUT), and how or why.
+
+    error: over the accuracy; estimate: over the error; planning: over the run. None where there is none.
+    """
+
+    scene: str
+    accuracy: float
+    came: str
+    how: str
+    error: float | None = None
+    estimate: float | None = None
+    planning: float | None = None
+
+
+COMPUTED, NOT_REACHED, REFUSED, LEFT_OUT = OUTCOMES = ("computed", "not reached", "refused", "left out")
+
+
+def measure(accuracies: Sequence[float]) -> Iterator[Row]:
+    """Every scene at every accuracy: none is left out without a row that says why."""
     for name, scene in scenes():
-        fine, finer = at(scene, *FINE), at(scene, *FINER)
+        try:
+            fine, finer = at(scene, *FINE), at(scene, *FINER)
+        except InputError as error:
+            yield from (Row(name, accuracy, REFUSED, str(error)) for accuracy in accuracies)
+            continue
         if fine is None or finer is None:
-            print(f"{name}: a fine rod did not reach its end; left out", file=sys.stderr)
+            yield from (Row(name, x, LEFT_OUT, "a fine rod did not reach its end") for x in accuracies)
             continue
         known = position_gap(*fine, *finer) / scene.model.length
         for accuracy in accuracies:
             if accuracy < TOLD * known:
-                print(f"{name}: exact to {known:.0e} only; {accuracy:.0e} is left out", file=sys.stderr)
+                yield Row(name, accuracy, LEFT_OUT, f"exact to {known:.0e} only")
                 continue
-            run = geocosserat.run(scene, accuracy=accuracy)
-            found = run.solution
-            gaps = np.linalg.norm(interpolate(*finer, found.u) - found.position[-1], axis=1)
-            error = float(gaps.max()) / found.length
-            how = f"{found.method}, {found.elements} x {found.degree}, {len(found.plan)} runs"
-            how = how if run.reached else f"not reached: {run.reason}"
-            seconds = found.seconds["plan"] / found.seconds["solve"]
-            estimate = (run.error["estimated"] or np.inf) / error
-            yield name, accuracy, error / accuracy, estimate, seconds, how
+            yield _row(name, scene, accuracy, finer)
 
 
-def table(accuracies: tuple[float, ...] = ACCURACIES) -> str:
-    """A line for each accuracy, and those runs in full whose error is above the one asked for."""
-    rows = list(measure(accuracies))
+def _row(name: str, scene: Scene, accuracy: float, exact: tuple[Mesh, np.ndarray]) -> Row:
+    try:
+        run = geocosserat.run(scene, accuracy=accuracy)
+    except InputError as error:
+        return Row(name, accuracy, REFUSED, str(error))
+    found = run.solution
+    if found.time[-1] < scene.run.until:
+        return Row(name, accuracy, NOT_REACHED, run.reason)
+    gaps = np.linalg.norm(interpolate(*exact, found.u) - found.position[-1], axis=1)
+    error = float(gaps.max()) / found.length
+    how = f"{found.method}, {found.elements} x {found.degree}, {len(found.plan)} runs"
+    came, how = (COMPUTED, how) if run.reached else (NOT_REACHED, run.reason)
+    planning = found.seconds["plan"] / found.seconds["solve"]
+    estimate = (run.error["estimated"] or np.inf) / max(error, np.finfo(float).tiny)
+    return Row(name, accuracy, came, how, error / accuracy, estimate, planning)
+
+
+def table(accuracies: Sequence[float] = ACCURACIES) -> str:
+    return shown(accuracies, list(measure(accuracies)))
+
+
+def shown(accuracies: Sequence[float], rows: Sequence[Row]) -> str:
+    """A line for each accuracy: errors of the runs that claim to have it, and how many others there are; then in full
+    those whose error is above the one asked for, and those that did not get it."""
     lines = [
-        "| accuracy | runs | error/accuracy: median | most | below 1 | estimate/error: least | median | planning/run |",
-        "|---|---|---|---|---|---|---|---|",
+        "| accuracy | computed | not reached | refused | left out | error/accuracy: median | most | below 1 "
+        "| estimate/error: least | median | planning/run |",
+        "|---|---|---|---|---|---|---|---|---|---|---|",
     ]
     for accuracy in (*accuracies, None):
-        some = [row for row in rows if accuracy in (row[1], None) and not row[5].startswith("not")]
-        errors, estimates, seconds = (np.array([row[i] for row in some]) for i in (2, 3, 4))
-        cells = [
-            "all" if accuracy is None else f"{accuracy:.0e}",
-            str(len(some)),
-            f"{np.median(errors):.3f}",
-            f"{errors.max():.2f}",
-            f"{100 * np.mean(errors <= 1.0):.1f} %",
-            f"{estimates.min():.2f}",
-            f"{np.median(estimates):.1f}",
-            f"{np.median(seconds):.2f}",
-        ]
-        lines.append(f"| {' | '.join(cells)} |")
+        some = [row for row in rows if accuracy in (row.accuracy, None)]
+        counts = Counter(row.came for row in some)
+        cells = ["all" if accuracy is None else f"{accuracy:.0e}", *(str(counts[came]) for came in OUTCOMES)]
+        lines.append(f"| {' | '.join([*cells, *_statistics([row for row in some if row.came == COMPUTED])])} |")
     lines += [""]
-    for name, accuracy, error, _, _, how in rows:
-        if error > 1.0 or how.startswith("not"):
-            lines.append(f"* {name} at {accuracy:.0e}: {error:.2f} times it; {how}")
+    for row in rows:
+        if row.came in (NOT_REACHED, REFUSED) or (row.error or 0.0) > 1.0:
+            size = "" if row.error is None else f"{row.error:.2f} times it; "
+            came = "" if row.came == COMPUTED else f"{row.came}: "
+            lines.append(f"* {row.scene} at {row.accuracy:.0e}: {size}{came}{row.how}")
     return "\n".join(lines)
+
+
+def _statistics(rows: Sequence[Row]) -> list[str]:
+    if not rows:
+        return ["-"] * 6
+    errors, estimates, planning = (
+        np.array([getattr(row, name) for row in rows], dtype=float) for name in ("error", "estimate", "planning")
+    )
+    return [
+        f"{np.median(errors):.3f}",
+        f"{errors.max():.2f}",
+        f"{100 * np.mean(errors <= 1.0):.1f} %",
+        f"{estimates.min():.2f}",
+        f"{np.median(estimates):.1f}",
+        f"{np.median(planning):.2f}",
+    ]
 
 
 if __name__ == "__main__":

@@ -10,7 +10,7 @@ import sys
 from collections.abc import Callable, Mapping
 from functools import wraps
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import click
 from rich.console import Console
@@ -34,6 +34,7 @@ from geocosserat.version import VERSION
 
 NO, WRONG_INPUT, NOT_REACHED = 1, 2, 3
 MOST_PROCESSES = 4
+Found = TypeVar("Found")
 
 SETTINGS = click.option(
     "--set", "settings", metavar="KEY=VALUE", multiple=True, help="Change any key, e.g. rod.length=2."
@@ -43,7 +44,7 @@ OVERWRITE = click.option("--overwrite", is_flag=True, help="Replace files of an 
 
 
 def _one_message(command: Callable[..., None]) -> Callable[..., None]:
-    """Wrong input ends with code 2 and one line on standard error."""
+    """Wrong input ends with code 2 and one line on standard error, an interrupt with code 3 and another."""
 
     @wraps(command)
     def guarded(*args: Any, **options: Any) -> None:
@@ -52,6 +53,9 @@ def _one_message(command: Callable[..., None]) -> Callable[..., None]:
         except (InputError, FileError, CompileError) as error:
             click.echo(f"geocosserat: {error}", err=True)
             sys.exit(WRONG_INPUT)
+        except KeyboardInterrupt:
+            click.echo("geocosserat: interrupted", err=True)
+            sys.exit(NOT_REACHED)
         except BrokenPipeError:  # the reader of our output left
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
@@ -90,8 +94,9 @@ def run(
     try:
         result = run_scene(scene, out, settings=settings, accuracy=accuracy, overwrite=overwrite, resume=resume)
     except KeyboardInterrupt:
-        kept = f"; go on with --out {out} --resume" if out and (Path(out) / CHECKPOINT).exists() else ""
-        click.echo(f"geocosserat: interrupted{kept}", err=True)
+        if not out or not (Path(out) / CHECKPOINT).exists():
+            raise
+        click.echo(f"geocosserat: interrupted; go on with --out {out} --resume", err=True)
         sys.exit(NOT_REACHED)
     if as_json:
         _print_json(result.fields)
@@ -99,6 +104,83 @@ def run(
         print_summary(result.solution, Console(), files=result.files)
     if not result.reached:
         click.echo(f"geocosserat: not reached: {result.reason}", err=True)
+        sys.exit(NOT_REACHED)
+
+
+@main.command()
+@click.argument("scene", type=click.Path())
+@click.option("--out", type=click.Path(), help="Folder for equilibrium.nc, .png and .json.")
+@click.option("--accuracy", type=float, help="Position error, relative to the length of the rod.")
+@click.option("--all", "every", is_flag=True, help="Search for further states of rest.")
+@SETTINGS
+@OVERWRITE
+@JSON
+@_one_message
+def equilibrium(
+    scene: str,
+    out: str | None,
+    accuracy: float | None,
+    every: bool,
+    settings: tuple[str, ...],
+    overwrite: bool,
+    as_json: bool,
+) -> None:
+    """Where SCENE rests, found directly, and whether it stays there."""
+    from geocosserat.conductor.equilibrium import equilibrium as find_equilibrium
+    from geocosserat.results.stability_table import print_rest
+
+    found = _reached(
+        lambda: find_equilibrium(
+            scene, out, settings=settings, accuracy=accuracy, every=every, overwrite=overwrite
+        )
+    )
+    if as_json:
+        _print_json(found.fields)
+        return
+    print_rest(found.solution, found.residual, found.modes, Console(), [str(file) for file in found.files])
+    for number, other in enumerate((found.solutions or ())[1:], start=2):
+        print_rest(other.solution, other.residual, other.modes, Console(), title=f"state of rest {number}")
+
+
+@main.command()
+@click.argument("scene", type=click.Path())
+@click.option("--out", type=click.Path(), help="Folder for stability.png, .svg and .json.")
+@click.option("--over", metavar="KEY=A:B", multiple=True, help="Follow the state while a value changes; twice: a map.")
+@click.option("--count", type=int, default=6, show_default=True, help="How many growth rates to tell.")
+@SETTINGS
+@OVERWRITE
+@JSON
+@_one_message
+def stability(
+    scene: str,
+    out: str | None,
+    over: tuple[str, ...],
+    count: int,
+    settings: tuple[str, ...],
+    overwrite: bool,
+    as_json: bool,
+) -> None:
+    """Do small motions about the rest of SCENE grow, and from which value of a key on?"""
+    from geocosserat.conductor.stability import stability as find_stability
+    from geocosserat.results.stability_table import print_stability
+
+    found = _reached(
+        lambda: find_stability(scene, out, over=over, count=count, settings=settings, overwrite=overwrite)
+    )
+    if as_json:
+        _print_json(found.fields)
+    else:
+        print_stability(found.record, Console())
+
+
+def _reached(find: Callable[[], Found]) -> Found:
+    """What is found; ends with code 3 if nothing is."""
+    from geocosserat.conductor.equilibrium import NotReached
+
+    try:
+        return find()
+    except NotReached as error:
+        click.echo(f"geocosserat: not reached: {error}", err=True)
         sys.exit(NOT_REACHED)
 
 
@@ -122,17 +204,14 @@ def cost(
 ) -> None:
     """What accuracy costs in time: SCENE computed in many ways, each timed."""
     chosen = [name.strip() for name in methods.split(",")]
-    try:
-        found = measure_cost(
-            scene, out, settings=settings, methods=chosen, seconds=seconds, overwrite=overwrite
-        )
-    except KeyboardInterrupt:
-        click.echo("geocosserat: interrupted", err=True)
-        sys.exit(NOT_REACHED)
+    found = measure_cost(scene, out, settings=settings, methods=chosen, seconds=seconds, overwrite=overwrite)
     if as_json:
         _print_json(found.fields)
     else:
         print_diagram(found.diagram, Console(), [str(file) for file in found.files])
+    if not found.reached:
+        click.echo(f"geocosserat: not reached: {found.reason}", err=True)
+        sys.exit(NOT_REACHED)
 
 
 @main.command()
@@ -185,11 +264,7 @@ def generate(scene: str, backend: str, out: str, settings: tuple[str, ...], over
 @_one_message
 def check(law: str, out: str | None, settings: tuple[str, ...], overwrite: bool, as_json: bool) -> None:
     """Is the constitutive law in LAW (a TOML file) passive? With a proof, or a counter-example that runs."""
-    try:
-        result = check_law(law, out, values=dict(map(_value, settings)), overwrite=overwrite)
-    except KeyboardInterrupt:
-        click.echo("geocosserat: interrupted", err=True)
-        sys.exit(NOT_REACHED)
+    result = check_law(law, out, values=dict(map(_value, settings)), overwrite=overwrite)
     if as_json:
         _print_json(result.fields)
     elif result.found is None:
@@ -222,12 +297,8 @@ def paper(html: str | None, overwrite: bool, as_json: bool) -> None:
     """Check every statement of the paper: verdict by verdict."""
     target = None if html is None else _claim_file(Path(html), "--html", overwrite)
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    try:
-        with progress("judging", unit="statements") as bar:
-            report = review_paper(lambda done, total: bar(done / total, done), min(cores, MOST_PROCESSES))
-    except KeyboardInterrupt:
-        click.echo("geocosserat: interrupted", err=True)
-        sys.exit(NOT_REACHED)
+    with progress("judging", unit="statements") as bar:
+        report = review_paper(lambda done, total: bar(done / total, done), min(cores, MOST_PROCESSES))
     files = []
     if target is not None:
         from geocosserat.referee.page import page

@@ -10,6 +10,7 @@ from pathlib import Path
 import hypothesis
 import pytest
 
+from geocosserat.kernel import compile as compiling
 from geocosserat.kernel.compile import compiler
 
 ROOT = Path(__file__).parents[1]
@@ -19,16 +20,19 @@ hypothesis.settings.load_profile("patient")
 
 
 @pytest.fixture(scope="session", autouse=True)
-def cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+def cache(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     """This session's cache: kernels of earlier versions are never used, and the user's own stay untouched.
 
-    Worker processes share it: each kernel is generated and compiled once.
+    Worker processes share it: each kernel is generated and compiled once. Quick tests take a third of the time to do so
+    without the optimiser; slow ones, and programs that are started, compile as users do.
     """
     base = tmp_path_factory.getbasetemp()
     folder = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "cache"
     folder.mkdir(mode=0o700, exist_ok=True)
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("GEOCOSSERAT_CACHE", str(folder))
+        if request.config.option.markexpr == "not slow":
+            patch.setattr(compiling, "FLAGS", tuple("-O1" if flag == "-O3" else flag for flag in compiling.FLAGS))
         yield folder
 
 

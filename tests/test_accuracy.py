@@ -9,8 +9,9 @@ import pytest
 import geocosserat
 from geocosserat.model.expressions import parse, switch_times
 from geocosserat.model.scene import load_scene
-from geocosserat.planning.resolution import sees_all
+from geocosserat.planning.resolution import Resolution
 from geocosserat.planning.settings import SIZES
+from tests.marks import slow
 
 ROD = {"motion": "planar", "length": 1.0, "stiffness": [1e4, 1e4, 1.0], "friction": [1.0, 1.0, 0.01]}
 
@@ -19,7 +20,7 @@ def test_a_feature_between_the_points_is_noticed() -> None:
     """A coarse mesh that has no point on a narrow bump would agree with another one that has none."""
     narrow = {**ROD, "reference": ["1", "0", "60*exp(-((u-0.5)/0.01)**2)"]}
     scene = load_scene({"rod": narrow, "start": {"strain": ["1", "0", "0"]}, "run": {"until": 0.02}})
-    seen = [sees_all(scene, *size, 1e-6) for size in SIZES]
+    seen = [Resolution(scene).sees_all(*size, 1e-6) for size in SIZES]
     assert not any(seen[:2])
     assert seen[-1]
     run = geocosserat.run({"rod": narrow, "start": {"strain": ["1", "0", "0"]}, "run": {"until": 0.02, "frames": 2}})
@@ -36,7 +37,28 @@ def test_a_feature_too_fine_for_all_is_not_reported_as_solved() -> None:
     ends = {"right": {"kind": "free", "force": [0.0, 0.5], "frame": "body"}}
     run = geocosserat.run({"rod": soft, "ends": ends, "run": {"until": 0.2, "frames": 2}})
     assert not run.reached
-    assert "not reached by refinement" in run.reason
+    assert "too narrow for the finest mesh; see run.elements" in run.reason
+
+
+@pytest.mark.parametrize("accuracy", [slow(1e-2), 1e-4])
+def test_a_narrow_feature_counts_by_what_it_does_at_loose_accuracies_too(accuracy: float) -> None:
+    """A hinge of a thousandth of the length bends by half a radian; small as it is, all turns about it."""
+    hinge = {**ROD, "stiffness": [1e4, 1e4, "1-0.9995*exp(-((u-0.3)/0.001)**2)"]}
+    ends = {"right": {"kind": "free", "force": [0.0, 0.3], "frame": "body"}}
+    scene = {"rod": hinge, "ends": ends, "run": {"until": 0.5, "frames": 2}}
+    run = geocosserat.run(scene, accuracy=accuracy)
+    fine = geocosserat.run(scene, settings=["run.elements=200", "run.degree=8", "run.rtol=1e-6"])
+    away = np.linalg.norm(np.subtract(run.tip["position"], fine.tip["position"]))
+    assert away < accuracy or not run.reached
+
+
+@pytest.mark.parametrize("width", [slow(1e-4), 1e-9])
+def test_what_no_mesh_sees_is_not_reported_as_solved(width: float) -> None:
+    """Two meshes without a point on it would agree to all digits."""
+    bump = {"kind": "follower", "force": [0.0, f"exp(-((u-0.4321)/{width})**2)/{width}"]}
+    run = geocosserat.run({"rod": ROD, "effects": [bump], "run": {"until": 0.1, "frames": 2, "accuracy": 1e-3}})
+    assert not run.reached
+    assert "too narrow for the finest mesh" in run.reason
 
 
 STRESS = {"F1": "1e3*(h1-1)", "F2": "1e3*h2", "M": "Pi"}
@@ -48,9 +70,10 @@ def test_what_a_law_varies_is_noticed_as_what_a_stiffness_does() -> None:
     for moment in ("(1-0.99*exp(-((u-0.5123)/0.005)**2))*Pi", "Pi+5*exp(-((u-0.5123)/0.005)**2)*Pi_dot"):
         law = {**LAW, "name": "narrow", "stress": {**STRESS, "M": moment}}
         scene = load_scene({"rod": {"motion": "planar", "length": 1.0, "law": law}, "run": {"until": 0.1}})
-        assert not any(sees_all(scene, *size, 1e-6) for size in SIZES[:3])
+        assert not any(Resolution(scene).sees_all(*size, 1e-6) for size in SIZES[:3])
 
 
+@pytest.mark.slow
 def test_a_pulse_of_a_law_is_not_stepped_over() -> None:
     """A wrench that pushes for a moment moves the rod as a weight does that pushes as long."""
     pulse = "50*(heaviside(t-0.1)-heaviside(t-0.1005))"
@@ -64,6 +87,7 @@ def test_a_pulse_of_a_law_is_not_stepped_over() -> None:
     np.testing.assert_allclose(pushed.tip["position"], heavy.tip["position"], rtol=0, atol=2e-6)
 
 
+@pytest.mark.slow
 def test_an_accuracy_that_a_limit_of_friction_cannot_have_is_said_at_once(examples: Path) -> None:
     """What is left of friction is an error of the model: nothing is computed more finely than that."""
     run = geocosserat.run(examples / "euler_bernoulli.toml", accuracy=1e-12, settings=["run.frames=2"])
@@ -74,6 +98,7 @@ def test_an_accuracy_that_a_limit_of_friction_cannot_have_is_said_at_once(exampl
     assert geocosserat.run(examples / "euler_bernoulli.toml", accuracy=1.2e-10, settings=["run.frames=2"]).reached
 
 
+@pytest.mark.slow
 def test_an_accuracy_below_round_off_is_answered_with_the_floor(examples: Path) -> None:
     """How far it went, and that no tolerance goes further."""
     run = geocosserat.run(examples / "cantilever.toml", accuracy=3e-15, settings=["run.frames=2"])
@@ -86,7 +111,7 @@ def test_an_accuracy_below_round_off_is_answered_with_the_floor(examples: Path) 
 
 def test_uniform_rods_are_seen_by_the_coarsest_mesh() -> None:
     """Nothing varies, nothing can be missed."""
-    assert sees_all(load_scene({"rod": ROD, "run": {"until": 1.0}}), 1, 1, 1e-12)
+    assert Resolution(load_scene({"rod": ROD, "run": {"until": 1.0}})).sees_all(1, 1, 1e-12)
 
 
 @pytest.mark.parametrize("method", ["cvode", "radau", "bdf", "lsoda"])
@@ -99,6 +124,21 @@ def test_a_pulse_on_a_rod_at_rest_is_not_stepped_over(method: str) -> None:
     assert early.tip["position"][1] > 0.02
     np.testing.assert_allclose(late.tip["position"], early.tip["position"], rtol=0, atol=2e-6)
     assert late.ledger["residual"] < 1e-5
+
+
+@pytest.mark.parametrize("method", ["cvode", "radau", "bdf", "lsoda"])
+def test_a_smooth_pulse_is_not_stepped_over(method: str) -> None:
+    """However narrow: what it did is what a short push does that is cut out of it."""
+    pulse = "2e4*exp(-((t-0.37)/1e-6)**2)"
+    scenes = [
+        {"rod": ROD, "ends": {"right": {"kind": "free", "force": [0.0, force], "frame": "world"}},
+         "run": {"until": until, "method": method, "frames": 2}}
+        for force, until in ((pulse, 0.371), ("2e4*exp(-((t-1e-5)/1e-6)**2)*heaviside(2e-5-t)", 0.00101))
+    ]  # fmt: skip
+    late, early = (geocosserat.run(scene) for scene in scenes)
+    assert early.tip["position"][1] > 0.02
+    np.testing.assert_allclose(late.tip["position"], early.tip["position"], rtol=0, atol=2e-6)
+    assert late.reached
 
 
 def test_instants_of_output_on_switches_are_kept() -> None:
@@ -126,6 +166,7 @@ def test_switches_are_found_where_they_are(text: str, times: list[float]) -> Non
     np.testing.assert_allclose(found, times, rtol=0, atol=1e-9)
 
 
+@pytest.mark.slow
 def test_two_held_ends_count_what_the_far_one_strayed() -> None:
     """Coarsely, the right end leaves its clamp by the error of the scheme; the estimate of a fine run covers it."""
     rod = {

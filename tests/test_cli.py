@@ -359,6 +359,18 @@ def test_an_interrupt_ends_with_three_and_says_how_to_go_on(cantilever: str, tmp
     assert not (tmp_path / "solution.nc").exists()
 
 
+@pytest.mark.parametrize("library", ["click", "matplotlib"])
+@pytest.mark.parametrize("error", ["KeyboardInterrupt", "ImportError('initialization failed')"])
+def test_an_interrupt_during_imports_is_quiet(library: str, error: str, cantilever: str, tmp_path: Path) -> None:
+    """At the start, or of what draws the picture; libraries may make other errors of it. What was written stays."""
+    code = f"import os, signal\ntry: os.kill(os.getpid(), signal.SIGINT)\nexcept KeyboardInterrupt: raise {error}\n"
+    (tmp_path / f"{library}.py").write_text(code)
+    path, out = os.pathsep.join([str(tmp_path), str(ROOT)]), tmp_path / "out"
+    done = program("run", cantilever, *QUICK, "--out", str(out), PYTHONPATH=path)
+    assert (done.returncode, done.stdout, done.stderr) == (3, "", "geocosserat: interrupted\n")
+    assert (out / "solution.nc").exists() == (library == "matplotlib")
+
+
 def test_resuming_nothing_is_refused_in_one_line(cantilever: str, tmp_path: Path) -> None:
     """No folder named, or none there."""
     assert "--resume: expected the folder of the interrupted run" in refused(call("run", cantilever, "--resume"))

@@ -9,6 +9,8 @@ import sys
 from fractions import Fraction
 from pathlib import Path
 
+import pytest
+
 from geocosserat.referee.report import VERDICTS
 
 ROOT = Path(__file__).parents[1]
@@ -29,6 +31,7 @@ def ran(code: str, folder: Path) -> str:
     return done.stdout
 
 
+@pytest.mark.slow
 def test_another_group_is_judged_by_the_same_code(tmp_path: Path) -> None:
     """Both laws of a filament on SO(3) hold; with a wrong sign they do not, and its page shows the code."""
     assert len(OWN.partition("NAMES =")[2].splitlines()) <= 20

@@ -7,11 +7,13 @@ import shlex
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import geocosserat
+from tests.marks import slow
 
 ROOT = Path(__file__).parents[1]
 BLOCKS = re.findall(r"^```(\w+)\n(.*?)^```", (ROOT / "README.md").read_text(), re.MULTILINE | re.DOTALL)
@@ -33,7 +35,14 @@ def _environment() -> dict[str, str]:
     return {**os.environ, "PYTHONPATH": os.pathsep.join(paths)}
 
 
-@pytest.mark.parametrize("line", [line for block in blocks("sh") for line in block.splitlines()])
+def _lines() -> list[Any]:
+    """All shell lines; quick is the first one of each command, but for that of the law, which is asked more below."""
+    lines = [line for block in blocks("sh") for line in block.splitlines()]
+    firsts = {line.split()[1]: line for line in reversed(lines)}
+    return [line if line in firsts.values() and "check" not in line else slow(line) for line in lines]
+
+
+@pytest.mark.parametrize("line", _lines())
 def test_every_command_of_the_readme_works(line: str, folder: Path) -> None:
     """Each shell line runs as printed and says something."""
     words = shlex.split(line)
@@ -81,6 +90,7 @@ def test_the_twelve_lines_make_the_rod_of_the_demo(folder: Path, examples: Path)
     np.testing.assert_allclose(short.tip["position"], demo.tip["position"], rtol=0, atol=2e-6)
 
 
+@pytest.mark.slow
 def test_the_scene_of_the_documentation_runs() -> None:
     """The annotated scene in docs/scenes.md is a scene; it is run coarsely."""
     text = (ROOT / "docs" / "scenes.md").read_text()

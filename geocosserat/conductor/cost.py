@@ -14,8 +14,7 @@ from typing import Any
 import numpy as np
 
 from geocosserat.conductor.folder import claim, give_back
-from geocosserat.conductor.kernels import choose_backend, kernel_text
-from geocosserat.conductor.run import tell
+from geocosserat.conductor.kernels import choose_backend, kernel_text, on_backend
 from geocosserat.conductor.scene import SceneLike, load_any
 from geocosserat.conductor.search import planned
 from geocosserat.conductor.simulate import Attempt, Clock, Simulator
@@ -24,7 +23,7 @@ from geocosserat.kernel.compile import CompileError, compiler
 from geocosserat.model.errors import InputError
 from geocosserat.model.records import Scene
 from geocosserat.planning.gap import position_gap
-from geocosserat.planning.settings import LEAST, Setting
+from geocosserat.planning.settings import HABITS, Setting
 from geocosserat.results.atomic import write_bytes
 from geocosserat.results.checkpoint import Keeper
 from geocosserat.results.diagram import AS_GIVEN, Diagram, ModelError, Point, Reference
@@ -78,9 +77,10 @@ def cost(
     """What accuracy costs in time: error against seconds over methods, meshes, tolerances and models.
 
     Each way is timed several times, warm: the integration alone. seconds: for all of that, besides the reference and
-    what has to be compiled. out: a folder for the diagram as cost.png, cost.svg and cost.json.
+    what has to be compiled. out: a folder for the diagram as cost.png, cost.svg and cost.json. A scene that no run
+    follows to its end is returned too, with `reached` false and the reason.
 
-    Raises InputError for a wrong scene, method or folder, or if no reference can be computed.
+    Raises InputError for a wrong scene, method or folder.
     """
     for method in methods:
         if method not in METHODS:
@@ -89,12 +89,13 @@ def cost(
     if not 0.0 < seconds < float("inf"):
         raise InputError("a number of seconds above zero", repr(seconds), "leave it out for 60", key="--seconds")
     read = _unset(load_any(scene, settings))
-    backend = choose_backend(read.run.backend, tell)
+    backend = choose_backend(read.run.backend)
     folder = None if out is None else Path(out)
     if folder is not None:
         claim(folder, overwrite, COST_FILES)
     try:
-        diagram = _Measured(read, backend, tuple(dict.fromkeys(methods)), seconds).diagram()
+        chosen = tuple(dict.fromkeys(methods))
+        diagram = on_backend(read.run.backend, backend, lambda used: _Measured(read, used, chosen, seconds).diagram())
     except (InputError, CompileError, KeyboardInterrupt):
         if folder is not None:
             give_back(folder)
@@ -108,6 +109,10 @@ def _unset(scene: Scene) -> Scene:
     return replace(scene, run=run)
 
 
+class _NoReference(Exception):
+    """Nothing counts as exact; ``str()`` says why."""
+
+
 class _Measured:
     """Measures the ways of a scene, from coarse to fine, until its time is up."""
 
@@ -117,7 +122,10 @@ class _Measured:
         self.points: list[Point] = []
 
     def diagram(self) -> Diagram:
-        mesh, positions, reference = self._reference(self.scene, EXACT)
+        try:
+            mesh, positions, reference = self._reference(self.scene, EXACT)
+        except _NoReference as error:
+            return self._diagram((), None, f"no run to compare with: {error}")
         models = list(self._models(mesh, positions))
         sweeps = [(AS_GIVEN, self.scene, size, method) for size in MESHES for method in self.methods]
         sweeps += [
@@ -131,25 +139,32 @@ class _Measured:
             for i, (model, scene, size, method) in enumerate(sweeps):
                 report(i / len(sweeps), len(self.points))
                 self._sweep(model, scene, size, method, mesh, positions, reference.error)
+        failed = all(point.error is None for point in self.points)
+        reason = f"none of {len(self.points)} ways came to the end of the scene" if failed else ""
+        return self._diagram(tuple(error for error, _ in models), reference, reason)
+
+    def _diagram(self, models: tuple[ModelError, ...], reference: Reference | None, reason: str) -> Diagram:
         return Diagram(
             scene=self.scene.path or self.scene.title,
             title=self.scene.title,
             points=tuple(self.points),
-            models=tuple(error for error, _ in models),
+            models=models,
             reference=reference,
             left_out=self.left_out,
             machine=machine(self.backend),
+            reason=reason,
         )
 
-    def _simulator(self, scene: Scene) -> Simulator:
-        return Simulator(scene, self.backend, kernel_text, Clock())
+    def _simulator(self, scene: Scene, seconds: float) -> Simulator:
+        return Simulator(scene, self.backend, kernel_text, Clock(), seconds)
 
     def _reference(self, scene: Scene, accuracy: float) -> tuple[Mesh, Array, Reference]:
-        """The rod at the end as exactly as a plan gets it."""
-        found = planned(self._simulator(scene), Keeper(None, "", False), accuracy)
+        """The rod at the end as exactly as a plan gets it; none of its runs takes longer than all that is timed may."""
+        simulate = self._simulator(scene, max(self.seconds, MOST_SECONDS))
+        found = planned(simulate, Keeper(None, "", False), accuracy)
         attempt, setting = found.attempt, found.attempt.setting
         if not attempt.trajectory.reached or found.estimate is None:
-            raise InputError("a scene that can be run to its end", found.reason, "shorten it, or see `run`", key="run")
+            raise _NoReference(found.reason)
         error = max(found.estimate, np.finfo(float).eps)
         reference = Reference(setting.method, setting.elements, setting.degree, setting.rtol, error)
         return attempt.rod.mesh, _end(attempt), reference
@@ -165,7 +180,7 @@ class _Measured:
             try:
                 scene = _unset(load_any(self.scene, [f"rod.frozen=[{listed}]"]))
                 own, end, _ = self._reference(scene, OWN)
-            except InputError as error:
+            except (InputError, _NoReference) as error:
                 yield ModelError(name, frozen, None, f"not possible here: {error}"), self.scene
                 continue
             yield ModelError(name, frozen, _gap(self.scene, own, end, mesh, positions), ""), scene
@@ -174,7 +189,7 @@ class _Measured:
         self, model: str, scene: Scene, size: tuple[int, int], method: str, mesh: Mesh, exact: Array, least: float
     ) -> None:
         """One mesh and method, from loose tolerances to tight ones, while that makes the error less."""
-        simulate = self._simulator(scene)
+        simulate = self._simulator(scene, max(0.0, self.seconds - self.spent))
         first, last = DECADES[method]
         unknowns = size[0] * size[1] * scene.model.group.dimension
         if unknowns > LARGEST.get(method, unknowns):
@@ -185,7 +200,8 @@ class _Measured:
             if self.spent > self.seconds:
                 self.left_out += last + 1 - decade
                 return
-            point = self._point(model, simulate, Setting(*size, max(10.0**-decade, LEAST[method]), method), mesh, exact)
+            setting = Setting(*size, max(10.0**-decade, HABITS[method].least), method)
+            point = self._point(model, simulate, setting, mesh, exact)
             self.points.append(point)
             failures += point.error is None
             errors.append(np.inf if point.error is None else point.error)
@@ -245,7 +261,13 @@ def machine(backend: str) -> Mapping[str, str]:
 
 
 def _write(diagram: Diagram, folder: Path) -> tuple[Path, ...]:
+    """The files; without the pictures where there is nothing to be seen."""
     from geocosserat.results.diagram_picture import picture
 
-    write_bytes(folder / FINDINGS, (json.dumps(diagram.fields, indent=2, allow_nan=False) + "\n").encode())
-    return (folder / FINDINGS, picture(diagram, folder / PICTURE), picture(diagram, folder / VECTORS))
+    found = [write_bytes(folder / FINDINGS, (json.dumps(diagram.fields, indent=2, allow_nan=False) + "\n").encode())]
+    for name in (PICTURE, VECTORS):
+        if diagram.points:
+            found.append(picture(diagram, folder / name))
+        else:
+            (folder / name).unlink(missing_ok=True)  # of an earlier call
+    return tuple(found)

@@ -5,7 +5,6 @@
 
 import hashlib
 import os
-import sys
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -15,10 +14,10 @@ from typing import Any
 
 from geocosserat.bounded import OutOfBounds, bounded
 from geocosserat.conductor.folder import claim, give_back
-from geocosserat.conductor.kernels import choose_backend, kernel_text
+from geocosserat.conductor.kernels import choose_backend, kernel_text, on_backend, tell
 from geocosserat.conductor.report import solution_of
 from geocosserat.conductor.scene import MOST_SECONDS, SceneLike, laws_of, load_any
-from geocosserat.conductor.search import Found, search
+from geocosserat.conductor.search import search
 from geocosserat.conductor.simulate import Clock, Simulator
 from geocosserat.kernel.compile import CompileError
 from geocosserat.model.errors import InputError
@@ -48,10 +47,6 @@ class Run:
         raise AttributeError(f"a run has no field {name!r}; it has {', '.join(fields)}")
 
 
-def tell(message: str) -> None:
-    print(message, file=sys.stderr)
-
-
 def run(
     scene: SceneLike,
     out: str | os.PathLike[str] | None = None,
@@ -75,13 +70,15 @@ def run(
     folder = None if out is None else Path(out)
     if resume and folder is None:
         raise InputError("the folder of the interrupted run", "none", "name it with --out", key="--resume")
-    backend = choose_backend(read.run.backend, tell)
+    backend = choose_backend(read.run.backend)
     keeper = Keeper(folder, _key(read, backend), resume)
     if folder is not None:
         claim(folder, overwrite or resume, (SOLUTION, PICTURE, SUMMARY, CHECKPOINT))
     clock = Clock()
     try:
-        found = _simulate(read, backend, clock, keeper)
+        found = on_backend(
+            read.run.backend, backend, lambda used: search(Simulator(read, used, kernel_text, clock), keeper)
+        )
     except (CompileError, InputError):
         if folder is not None:
             give_back(folder)
@@ -113,17 +110,6 @@ def _said_of(law: Law) -> dict[str, Any]:
             )
         return {"name": law.name, "verdict": found.verdict, "grade": found.grade}
     return {"name": law.name, "verdict": "undecided", "grade": None}
-
-
-def _simulate(scene: Scene, backend: str, clock: Clock, keeper: Keeper) -> Found:
-    """The simulation, on numpy if C was not asked for and turns out not to compile."""
-    try:
-        return search(Simulator(scene, backend, kernel_text, clock), keeper)
-    except CompileError as error:
-        if scene.run.backend == "c":
-            raise
-        tell(f"{error}; running on numpy instead")
-        return search(Simulator(scene, "numpy", kernel_text, clock), keeper)
 
 
 def _key(scene: Scene, backend: str) -> str:

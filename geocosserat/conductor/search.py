@@ -14,11 +14,11 @@ from geocosserat.model.errors import InputError
 from geocosserat.model.records import Scene
 from geocosserat.planning.gap import position_gap
 from geocosserat.planning.plan import Choice, Errors, Level, Verdict, plan
-from geocosserat.planning.resolution import sees_all
+from geocosserat.planning.resolution import Resolution
 from geocosserat.planning.settings import (
     DEFAULT_ACCURACY,
+    HABITS,
     LARGEST_DENSE,
-    LEAST,
     ROUND_OFF,
     SIZES,
     Setting,
@@ -30,6 +30,10 @@ from geocosserat.results.checkpoint import Keeper
 
 LEDGER = 10.0
 """What the balance of energy may lack, in units of the accuracy."""
+
+
+BLIND = 0.1
+"""A mesh that misses so large a part of something that varies along the rod has not seen it: no run on it counts."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,6 +83,7 @@ class _Search:
     def __init__(self, simulate: Simulator, keeper: Keeper, accuracy: float) -> None:
         self.simulate, self.keeper, self.accuracy = simulate, keeper, accuracy
         self.scene = simulate.scene
+        self.resolution = Resolution(self.scene)
         self.first = self._first()
         self.outcomes: list[Outcome] = []
         self.settings: list[Setting] = []
@@ -108,9 +113,11 @@ class _Search:
         if kept is None:  # its states were given up before an interruption
             kept = self.simulate(self.settings[verdict.kept], self.scene.run.frames)
         estimate = None if verdict.estimate is None else max(verdict.estimate + modelled, ROUND_OFF)
-        reached = verdict.reached and estimate is not None and estimate <= self.accuracy
+        setting, part = kept.setting, max(BLIND, self.accuracy**0.5)
+        blind = not self.resolution.sees_all(setting.elements, setting.degree, self.accuracy, part)
+        reached = verdict.reached and not blind and estimate is not None and estimate <= self.accuracy
         last = next(reversed(whole.values()), kept)
-        return Found(kept, estimate, reached, _reason(kept, last, estimate, reached, modelled), tuple(self.runs))
+        return Found(kept, estimate, reached, _reason(kept, last, estimate, reached, modelled, blind), tuple(self.runs))
 
     def _run(self, level: Level, whole: bool) -> Attempt | None:
         """One more run of the plan; None where no more is needed than what is known from before an interruption."""
@@ -161,7 +168,7 @@ class _Search:
     def _first(self) -> int:
         """The first size that notices everything the scene varies along the rod; but not the last one of all."""
         sizes = range(len(SIZES) - 2)
-        return next((k for k in sizes if sees_all(self.scene, *SIZES[k], self.accuracy)), len(SIZES) - 2)
+        return next((k for k in sizes if self.resolution.sees_all(*SIZES[k], self.accuracy)), len(SIZES) - 2)
 
     def _gap(self, coarse: int, fine: int) -> float:
         one, other = self.outcomes[coarse], self.outcomes[fine]
@@ -188,14 +195,19 @@ def _left(scene: Scene, attempt: Attempt) -> Array:
     return np.concatenate([first, positions])
 
 
-def _reason(kept: Attempt, last: Attempt, estimate: float | None, reached: bool, modelled: float) -> str:
-    """Why the accuracy was not reached; last: the last run that might have had it; modelled: what no run can have."""
+def _reason(
+    kept: Attempt, last: Attempt, estimate: float | None, reached: bool, modelled: float, blind: bool
+) -> str:
+    """Why the accuracy was not reached; last: the last run that might have had it; modelled: what no run can have;
+    blind: whether there is something that the run did not see."""
     if reached or not kept.trajectory.reached:
         return kept.trajectory.reason
+    if blind:
+        return "something that varies along the rod is too narrow for the finest mesh; see run.elements"
     if not last.trajectory.reached:
         return f"a finer run, for the accuracy asked for, did not come to its end: {last.trajectory.reason}"
     if estimate is not None and modelled > 0.3 * estimate:
         return f"rotations without friction are a limit, of which {modelled:.1g} is left; ask for a larger error"
-    if estimate is not None and kept.setting.rtol <= LEAST[kept.setting.method]:
+    if estimate is not None and kept.setting.rtol <= HABITS[kept.setting.method].least:
         return f"the accuracy asked for is below round-off: at the least tolerance, about {estimate:.1g} is left"
     return "the accuracy asked for was not reached by refinement"

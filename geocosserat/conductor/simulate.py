@@ -1,5 +1,6 @@
 """One simulation of a scene at one setting: how exactly, from where, past which instants."""
 
+import math
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -16,13 +17,12 @@ from geocosserat.kernel.load import load
 from geocosserat.kernel.native import NativeRod
 from geocosserat.kernel.pure import NumpyRod
 from geocosserat.model.errors import InputError
-from geocosserat.model.expressions import switch_times
-from geocosserat.model.formulas import stepping
 from geocosserat.model.records import Scene
+from geocosserat.planning.resolution import instants
 from geocosserat.planning.settings import DEFAULT_ACCURACY, Setting
 from geocosserat.results.progress import progress
 from geocosserat.solver.integrate import integrate
-from geocosserat.solver.trajectory import Frame, Trajectory
+from geocosserat.solver.trajectory import Frame, Progress, Trajectory
 
 MOST_NUMBERS = 2**28
 """States of all frames, in numbers: 2 GiB, and about as much again for the fields made of them."""
@@ -55,13 +55,25 @@ class Attempt:
     seconds: float
 
 
+class _OutOfTime(Exception):
+    """An integration took longer than it may."""
+
+
 class Simulator:
-    """Simulates a scene on a backend at any setting; the clock says what for."""
+    """Simulates a scene on a backend at any setting; the clock says what for. seconds: after which an integration is
+    cut off."""
 
     def __init__(
-        self, scene: Scene, backend: str, kernel_text: Callable[[RodStructure], KernelText], clock: Clock
+        self,
+        scene: Scene,
+        backend: str,
+        kernel_text: Callable[[RodStructure], KernelText],
+        clock: Clock,
+        seconds: float = math.inf,
     ) -> None:
         self.scene, self.backend, self.kernel_text, self.clock = scene, backend, kernel_text, clock
+        self.seconds = seconds
+        self.instants = instants(scene)
         self._last: tuple[tuple[int, int], SemiDiscrete, NativeRod | NumpyRod, KernelText] | None = None
 
     def __call__(
@@ -77,18 +89,21 @@ class Simulator:
         rod, kernel, text = self._on(setting.elements, setting.degree)
         times = np.linspace(0.0, scene.run.until, frames)
         _check_room(frames, len(rod.state))
-        atol = tolerances(rod, setting.rtol, scene.run.atol, _unit_of_energy(scene, rod, kernel))
+        atol = tolerances(rod, setting.rtol, scene.run.atol, unit_of_energy(scene, rod, kernel))
         done = begin(rod.state)
-        switches = switches_of(scene)
         start = time.perf_counter()
         with progress(scene.title) as report:
             if len(done) == len(times):  # it was complete when another one was interrupted
                 trajectory = Trajectory(times, done, 0, 0, 0, True)
             else:
-                to_come = times[len(done) - 1 :]
-                rest = integrate(
-                    kernel, done[-1], to_come, setting.method, setting.rtol, atol, report, frame, switches
-                )
+                to_come, told = times[len(done) - 1 :], _no_longer(self.seconds, report)
+                try:
+                    rest = integrate(
+                        kernel, done[-1], to_come, setting.method, setting.rtol, atol, told, frame, self.instants
+                    )
+                except _OutOfTime:
+                    why = f"cut off after {self.seconds:.3g} seconds"
+                    rest = Trajectory(to_come[:1], done[-1:], 0, 0, 0, False, why)
                 states = np.concatenate([done[:-1], rest.states])
                 trajectory = replace(rest, times=times[: len(states)], states=states)
         return Attempt(setting, rod, kernel, trajectory, text, time.perf_counter() - start)
@@ -103,6 +118,18 @@ class Simulator:
             with self.clock("compile"):
                 self._last = size, rod, load(text, rod, self.backend), text
         return self._last[1:]
+
+
+def _no_longer(seconds: float, report: Progress) -> Progress:
+    """Reports that end an integration when its time is up."""
+    end = time.perf_counter() + seconds
+
+    def told(fraction: float, steps: int) -> None:
+        if time.perf_counter() > end:
+            raise _OutOfTime
+        report(fraction, steps)
+
+    return told
 
 
 def tolerances(rod: SemiDiscrete, rtol: float, atol: float | None, energy: float) -> Array:
@@ -124,7 +151,7 @@ def tolerances(rod: SemiDiscrete, rtol: float, atol: float | None, energy: float
     return np.concatenate([along, carried[: rod.structure.carried], [strain * energy] * 2])
 
 
-def _unit_of_energy(scene: Scene, rod: SemiDiscrete, kernel: NativeRod | NumpyRod) -> float:
+def unit_of_energy(scene: Scene, rod: SemiDiscrete, kernel: NativeRod | NumpyRod) -> float:
     """Energy stored at the start, or that of bending the softest way by a radian if that is more."""
     model, group = scene.model, scene.model.group
     stiff = stiffnesses(model)
@@ -169,14 +196,8 @@ def unbalanced(scene: Scene, attempt: Attempt) -> float:
         for t, y in ((trajectory.times[i], trajectory.states[i]) for i in (0, -1))
     )
     stored, dissipated, work = last - first
-    scale = max(abs(stored), abs(dissipated), abs(work), 1e-3 * _unit_of_energy(scene, attempt.rod, kernel))
+    scale = max(abs(stored), abs(dissipated), abs(work), 1e-3 * unit_of_energy(scene, attempt.rod, kernel))
     return float(abs(stored + dissipated - work) / scale)
-
-
-def switches_of(scene: Scene) -> tuple[float, ...]:
-    """Instants at which something of the scene switches."""
-    parameters = scene.model.parameters
-    return tuple(t for e in stepping(scene, "t") for t in switch_times(e, scene.run.until, parameters))
 
 
 def _check_room(frames: int, size: int) -> None:

@@ -11,12 +11,12 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from geocosserat.discretisation.cells import POINTS, POWERS, Array, Twist, solved
-from geocosserat.discretisation.quaternions import of_unit_norm, product, turn
+from geocosserat.discretisation.quaternions import of_rotation, of_unit_norm, product, turn
 from geocosserat.model.errors import InputError
 from geocosserat.model.expressions import Expression, evaluate, switch_times
+from geocosserat.model.features import leaves, pulses
 
 CELLS = 64
 """Cells to begin with: what lasts less than a thousandth of the whole time may be overlooked, if it does not switch."""
@@ -52,7 +52,7 @@ class Course:
 
     def placed(self, position: Array, rotation: Array, angle: Array | None = None) -> "Course":
         """The course of an end whose start has this pose, instead of relative to it."""
-        turned = [float(angle)] if angle is not None else Rotation.from_matrix(rotation).as_quat(scalar_first=True)
+        turned = [float(angle)] if angle is not None else of_rotation(rotation)
         start = np.concatenate([position, turned])[:, None]
         series = np.moveaxis(self.powers, -1, 0)[..., ::-1]
         return Course(self.edges, np.moveaxis(_moved(start, series)[..., ::-1], 0, -1))
@@ -76,7 +76,11 @@ def course_of(
     def at(t: Array) -> Array:
         return np.stack([np.broadcast_to(evaluate(e, {**values, "t": t}), t.shape) for e in twist])
 
-    return follow(at, until, length, {t for e in twist for t in switch_times(e, until, values)})
+    breaks = {t for e in twist for t in switch_times(e, until, values)}
+    for e in twist:
+        if pulses(e, "t", until, values):
+            breaks |= set(leaves(e, "t", until, values))
+    return follow(at, until, length, breaks)
 
 
 def follow(twist: Twist, until: float, length: float, switches: Iterable[float] = ()) -> Course:

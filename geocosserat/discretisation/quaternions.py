@@ -3,6 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from geocosserat.algebra.exponential import vector_from_rotation
+
 Array = NDArray[np.float64]
 
 
@@ -42,6 +44,13 @@ def turn(q: Array, vector: Array) -> Array:
 
 def _cross(v: Array, w: Array) -> Array:
     return np.stack([v[1] * w[2] - v[2] * w[1], v[2] * w[0] - v[0] * w[2], v[0] * w[1] - v[1] * w[0]])
+
+
+def of_rotation(rotation: Array) -> Array:
+    """(4,) one of the two of a rotation matrix (3, 3)."""
+    vector = vector_from_rotation(rotation)
+    half = np.linalg.norm(vector) / 2
+    return np.concatenate([[np.cos(half)], np.sinc(half / np.pi) * vector / 2])
 
 
 def of_unit_norm(q: Array) -> Array:

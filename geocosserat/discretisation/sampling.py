@@ -16,7 +16,9 @@ SLACK = 1e-12
 """How much frozen modes yield where both ends are held, relative to what friction lets them: enough to be unique."""
 
 PULL = 1e5
-"""How fast an end that strayed returns home, relative to how fast the rod relaxes."""
+PULL_AT_REST = 1e3
+"""How fast an end that strayed returns home, relative to how fast the rod relaxes: ahead of a rod that moves; of one
+that is to rest no faster than it must, for it makes round-off in the place of the end a force."""
 
 QUASI_STATIC = (1e-10, 1e-8)
 """Friction of a rotation that has none, relative to what the other motions of a rod of this length feel.
@@ -59,7 +61,9 @@ def friction_of(model: RodModel, mesh: Mesh, left: float) -> Array:
     return mean
 
 
-def sample(structure: RodStructure, scene: Scene, mesh: Mesh, start: Poses) -> tuple[Array, Array, Array]:
+def sample(
+    structure: RodStructure, scene: Scene, mesh: Mesh, start: Poses, pull: float = PULL
+) -> tuple[Array, Array, Array]:
     model, u, u_point = scene.model, mesh.u, mesh.u_point
     friction = friction_of(model, mesh, left_of_friction(scene.run))
     turns = slice(model.group.translations, None)
@@ -73,7 +77,7 @@ def sample(structure: RodStructure, scene: Scene, mesh: Mesh, start: Poses) -> t
 
     homes = {f"{side}_{name}": x for side, n in (("left", 0), ("right", -1)) for name, x in _home(start, n).items()}
     # between two nodes nothing strays: the turn follows what is prescribed to both, and nothing else
-    homes["left_pull"] = homes["right_pull"] = _pull(model, friction) if len(u) > 2 else 0.0
+    homes["left_pull"] = homes["right_pull"] = pull * slowest(model, friction) if len(u) > 2 else 0.0
 
     def entry(c: Coefficient) -> Array:
         if c.name in homes:
@@ -126,10 +130,10 @@ def _home(start: Poses, n: int) -> dict[str, float]:
     return found | {"home_cos": float(rotation[0, 0]), "home_sin": float(rotation[1, 0])}
 
 
-def _pull(model: RodModel, friction: Array) -> float:
-    """How fast an end that strayed returns (1 / time): PULL times as fast as the softest mode of the rod relaxes."""
+def slowest(model: RodModel, friction: Array) -> float:
+    """About how fast the softest mode of the rod relaxes (1 / time)."""
     soft = min(stiffnesses(model)[model.group.translations :])
-    return PULL * soft / (float(friction[:, 0, 0].max()) * model.length**4)
+    return soft / (float(friction[:, 0, 0].max()) * model.length**4)
 
 
 def _padded(turns: NDArray[np.floating[Any]]) -> Array:

@@ -10,7 +10,7 @@ from geocosserat.discretisation.course import Course, course_of
 from geocosserat.discretisation.feasible import check_feasible
 from geocosserat.discretisation.mesh import Array, Mesh, make_mesh
 from geocosserat.discretisation.pose import Poses, cross_matrix, joined, march, plane_rotation
-from geocosserat.discretisation.sampling import along, frictionless, sample
+from geocosserat.discretisation.sampling import PULL, PULL_AT_REST, along, frictionless, sample
 from geocosserat.discretisation.structure import RodStructure
 from geocosserat.discretisation.structuring import structure_of
 from geocosserat.model.expressions import Expression, evaluate, jump_positions
@@ -121,10 +121,11 @@ def _course(end: End, scene: Scene) -> Course | None:
     return course_of(end.twist, tuple(scene.model.parameters.items()), scene.run.until, scene.model.length)
 
 
-def discretise(scene: Scene, elements: int, degree: int) -> SemiDiscrete:
-    """The semi-discrete rod of a scene with at least `elements` elements of this degree."""
+def discretise(scene: Scene, elements: int, degree: int, anchored: bool = False) -> SemiDiscrete:
+    """The semi-discrete rod of a scene with at least `elements` elements of this degree. anchored: see
+    `structure_of`; for a rod that is to rest."""
     model = scene.model
-    structure = structure_of(model)
+    structure = structure_of(model, anchored)
     mesh = make_mesh(model.length, elements, degree, _steps(scene), joined=model.joined)
     table = mesh.reference
     turn = np.array([along(e, model.parameters, mesh.u_point) for e in scene.start.strain])
@@ -144,7 +145,7 @@ def discretise(scene: Scene, elements: int, degree: int) -> SemiDiscrete:
         )
     placed = march(mesh, turn, anchor.position, anchor.rotation, anchor.angle, structure.base)
     check_feasible(model, mesh, placed)
-    uniform, point, node = sample(structure, scene, mesh, placed)
+    uniform, point, node = sample(structure, scene, mesh, placed, PULL_AT_REST if anchored else PULL)
     carried = np.zeros(structure.carried)
     if structure.carried == 7:
         carried[3] = 1.0  # the quaternion of no rotation

@@ -287,8 +287,9 @@ def _resting(e: Expression, group: Group, frozen: Sequence[bool]) -> Expression:
     return e
 
 
-def structure_of(model: RodModel) -> RodStructure:
-    """The structure of the kernel that `model` calls for."""
+def structure_of(model: RodModel, anchored: bool = False) -> RodStructure:
+    """The structure of the kernel that `model` calls for. anchored: an end that the march of poses does not hold is
+    drawn to its place even where nothing stirs the rod, so that the rate alone says where the rod can rest."""
     group, names = model.group, _Names()
     frozen = model.held
     law = _law(names, model.law, group, frozen) if model.law else None
@@ -316,7 +317,7 @@ def structure_of(model: RodModel) -> RodStructure:
     left, right = (_end(names, side, end, model, present(medium)) for side, end in sides)
     base = "left" if FIRMNESS.index(model.left.kind) >= FIRMNESS.index(model.right.kind) else "right"
     held = model.joined or "free" not in (model.left.kind, model.right.kind)
-    stirred = held and not model.joined and _stirred(model)
+    stirred = held and not model.joined and (anchored or _stirred(model))
     if stirred and base == "left":
         right = _homing(names, "right", right, group.space)
     elif stirred:

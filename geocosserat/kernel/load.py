@@ -3,6 +3,7 @@
 import importlib.machinery
 import importlib.util
 import types
+from functools import lru_cache
 
 from geocosserat.discretisation.semidiscrete import SemiDiscrete
 from geocosserat.kernel.compile import opened
@@ -11,10 +12,12 @@ from geocosserat.kernel.native import NativeRod
 from geocosserat.kernel.pure import NumpyRod
 
 
-def _module(text: KernelText) -> types.ModuleType:
-    """The generated numpy module; its text comes from this program's own templates, never from a scene."""
-    name = f"geocosserat_kernel_{text.identity[:16]}"
-    loader = _TextLoader(text.numpy, name)
+@lru_cache(maxsize=64)
+def _module(text: str, identity: str) -> types.ModuleType:
+    """The generated numpy module; its text comes from this program's own templates, never from a scene. Kept, since
+    Python takes longer to compile it than a rod of another value takes to be set up."""
+    name = f"geocosserat_kernel_{identity[:16]}"
+    loader = _TextLoader(text, name)
     spec = importlib.util.spec_from_loader(name, loader)
     assert spec is not None
     module = importlib.util.module_from_spec(spec)
@@ -43,4 +46,4 @@ def load(text: KernelText, rod: SemiDiscrete, backend: str) -> NativeRod | Numpy
     """
     if backend == "c":
         return opened(lambda library: NativeRod(library, rod), text.c, rod.mesh.degree)
-    return NumpyRod(_module(text), rod)
+    return NumpyRod(_module(text.numpy, text.identity), rod)

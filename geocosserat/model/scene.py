@@ -22,6 +22,7 @@ from geocosserat.model.schema import (
     DEFAULT_FRAMES,
     ENDS_KEYS,
     LEAST_ACCURACY,
+    LENGTHS,
     MAX_DEGREE,
     MAX_ELEMENTS,
     MAX_FRAMES,
@@ -59,7 +60,7 @@ def load_scene(scene: str | os.PathLike[str] | Mapping[str, Any], settings: Sequ
     group = group_of(word(*rod.at("motion"), MOTIONS))
     law = read_law(rod, group, parameters)
     parameters = {**(law.parameters if law else {}), **parameters}
-    names = Names(parameters, number(*rod.at("length"), Names(parameters), positive=True))
+    names = Names(parameters, _read_length(*rod.at("length"), Names(parameters)))
     run = _read_run(Table(*_required_table(table, "run"), RUN_KEYS), names)
     ends = Table(*_optional_table(table, "ends"), ENDS_KEYS)
     joined = read_joined(ends)
@@ -106,6 +107,15 @@ def _read_title(place: Place, value: Any) -> str:
     if not isinstance(value, str) or not value.isprintable() or len(value) > 200:
         raise place.wrong("one line of at most 200 characters", value, "write a title in quotes")
     return value
+
+
+def _read_length(place: Place, value: Any, names: Names) -> float:
+    """One whose fourth power, by which rods relax, is a number as well, and not the last one."""
+    length = number(place, value, names, positive=True)
+    least, most = LENGTHS
+    if not least <= length <= most:
+        raise place.wrong(f"a length from {least:g} to {most:g}", value, "choose a unit of length nearer to the rod's")
+    return length
 
 
 def _read_run(table: Table, names: Names) -> RunSettings:

@@ -61,21 +61,28 @@ class Reference:
 class Diagram:
     """Errors and seconds of a scene over methods, meshes, tolerances and models.
 
-    left_out: how many ways were not tried for want of time. machine: what it was measured on, in words.
+    reference: None if there is none, for the reason given; then there is nothing to measure errors by. left_out: how
+    many ways were not tried for want of time. machine: what it was measured on, in words.
     """
 
     scene: str
     title: str
     points: tuple[Point, ...]
     models: tuple[ModelError, ...]
-    reference: Reference
+    reference: Reference | None
     left_out: int
     machine: Mapping[str, str]
+    reason: str = ""
 
     @property
     def floor(self) -> float:
         """Errors below this are not told apart by the reference."""
-        return RESOLVED * self.reference.error
+        return RESOLVED * self.reference.error if self.reference else 0.0
+
+    @property
+    def reached(self) -> bool:
+        """Whether any way came to its end."""
+        return any(point.error is not None for point in self.points)
 
     @property
     def front(self) -> tuple[int, ...]:
@@ -98,7 +105,9 @@ class Diagram:
             "points": [asdict(point) for point in self.points],
             "front": list(self.front),
             "models": [{**asdict(model), "frozen": list(model.frozen)} for model in self.models],
-            "reference": {**asdict(self.reference), "floor": self.floor},
+            "reference": {**asdict(self.reference), "floor": self.floor} if self.reference else None,
+            "reached": self.reached,
+            "reason": self.reason,
             "left_out": self.left_out,
             "machine": dict(self.machine),
         }

@@ -38,7 +38,6 @@ def _row(point: Point, floor: float) -> tuple[str, ...]:
 
 def notes(diagram: Diagram) -> list[str]:
     """Lines for the foot of a table or a picture."""
-    reference = diagram.reference
     lines = [
         f"{len(diagram.points)} ways measured, {len(diagram.front)} that no other one beats in both error and time; "
         "errors are of positions at the end, relative to the length"
@@ -53,10 +52,11 @@ def notes(diagram: Diagram) -> list[str]:
         lines.append(f"failed {count} times: {method}: {reason}")
     if diagram.left_out:
         lines.append(f"not tried for want of time: {diagram.left_out}")
-    lines.append(
-        f"reference: {reference.method}, {reference.elements} x {reference.degree}, rtol {reference.rtol:.0e}, "
-        f"its own error at most {reference.error:.1e}"
-    )
+    if reference := diagram.reference:
+        lines.append(
+            f"reference: {reference.method}, {reference.elements} x {reference.degree}, rtol {reference.rtol:.0e}, "
+            f"its own error at most {reference.error:.1e}"
+        )
     return [*lines, ", ".join(f"{name} {version}".strip() for name, version in diagram.machine.items())]
 
 

@@ -52,7 +52,7 @@ def draw_spatial(axes: Axes3D, solution: Solution, frames: NDArray[np.intp], col
         for node, marker, size in ((0, "s", 5.0), (-1, "o", 4.5)):
             axes.plot(*solution.position[frame, node][:, None], marker=marker, markersize=size, zorder=4,
                       color=style.INK, markerfacecolor=fill, markeredgewidth=0.9, linestyle="none")
-    _frame_box(axes, shapes.reshape(-1, 3))
+    frame_box(axes, shapes.reshape(-1, 3))
 
 
 def _draw_ribbon(axes: Axes3D, solution: Solution, frame: int, colours: ScalarMappable) -> None:
@@ -66,7 +66,7 @@ def _draw_ribbon(axes: Axes3D, solution: Solution, frame: int, colours: ScalarMa
     axes.add_collection3d(Poly3DCollection(quads, facecolors=colour, edgecolors="none", alpha=0.35, zorder=1))
 
 
-def _frame_box(axes: Axes3D, points: Array) -> None:
+def frame_box(axes: Axes3D, points: Array) -> None:
     """Equal scales, a box no flatter than a third of its longest side, a view across the motion."""
     points = points[np.all(np.isfinite(points), axis=1)]
     low, high = (points.min(axis=0), points.max(axis=0)) if len(points) else (np.zeros(3), np.ones(3))

@@ -65,16 +65,16 @@ def print_summary(solution: Solution, console: Console, files: Iterable[str | os
     fields = summary(solution, files)
     rows = [
         ("rod", f"{fields['motion']}, {fields['unknowns']} unknowns "
-                f"({_count(fields['elements'], 'element')} of degree {fields['degree']})"),
+                f"({count(fields['elements'], 'element')} of degree {fields['degree']})"),
         *(("law", _law(law)) for law in [fields["contents"].get("law")] if law),
         ("time", _time(fields)),
-        ("tip", _place(fields["tip"])),
-        ("base", _place(fields["base"])),
-        ("energy", f"{_digits(fields['energy']['start'])} at the start, "
-                   f"{_digits(fields['energy']['end'])} at the end"),
+        ("tip", place(fields["tip"])),
+        ("base", place(fields["base"])),
+        ("energy", f"{digits(fields['energy']['start'])} at the start, "
+                   f"{digits(fields['energy']['end'])} at the end"),
         ("ledger", _ledger(fields["ledger"])),
-        ("error", f"estimated {_digits(fields['error']['estimated'], 2)}, "
-                  f"requested {_digits(fields['error']['requested'], 2)} (of the length)"),
+        ("error", f"estimated {digits(fields['error']['estimated'], 2)}, "
+                  f"requested {digits(fields['error']['requested'], 2)} (of the length)"),
         ("cost", _cost(fields)),
         *(("wrote", file) for file in fields["files"]),
     ]
@@ -104,29 +104,32 @@ def _finite(value: Any) -> Any:
     return [_finite(inner) for inner in value] if isinstance(value, list) else value
 
 
-def _digits(value: float | None, digits: int = 10) -> str:
-    return "unknown" if value is None else f"{value:.{digits}g}"
+def digits(value: float | None, most: int = 10) -> str:
+    """A number with so many digits, at most."""
+    return "unknown" if value is None else f"{value:.{most}g}"
 
 
-def _count(number: int, thing: str) -> str:
-    return f"{number} {thing}" if number == 1 else f"{number} {thing}s"
+def count(number: int, thing: str, things: str = "") -> str:
+    """So many things, in words."""
+    return f"{number} {thing}" if number == 1 else f"{number} {things or thing + 's'}"
 
 
-def _place(end: Mapping[str, Any]) -> str:
-    position = "(" + ", ".join(_digits(x) for x in end["position"]) + ")"
+def place(end: Mapping[str, Any]) -> str:
+    """Where an end is, and how it is turned."""
+    position = "(" + ", ".join(digits(x) for x in end["position"]) + ")"
     if "angle" in end:
-        return f"{position}, angle {_digits(end['angle'])}"
-    tangent = "(" + ", ".join(_digits(row[0], 6) for row in end["rotation"]) + ")"
+        return f"{position}, angle {digits(end['angle'])}"
+    tangent = "(" + ", ".join(digits(row[0], 6) for row in end["rotation"]) + ")"
     return f"{position}, normal to the section {tangent}"
 
 
 def _ledger(terms: Mapping[str, float | None]) -> str:
-    return (f"stored {_digits(terms['stored'], 6)} + dissipated {_digits(terms['dissipated'], 6)} "
-            f"= work {_digits(terms['work'], 6)}; residual {_digits(terms['residual'], 2)}")
+    return (f"stored {digits(terms['stored'], 6)} + dissipated {digits(terms['dissipated'], 6)} "
+            f"= work {digits(terms['work'], 6)}; residual {digits(terms['residual'], 2)}")
 
 
 def _time(fields: Mapping[str, Any]) -> str:
-    until = f"until {_digits(fields['until'], 6)}, {_count(fields['frames'], 'frame')}"
+    until = f"until {digits(fields['until'], 6)}, {count(fields['frames'], 'frame')}"
     return until if fields["reached"] else f"{until}; not reached: {fields['reason']}"
 
 
@@ -135,6 +138,6 @@ def _cost(fields: Mapping[str, Any]) -> str:
     spent = ", ".join(f"{name} {value:.3g} s" for name, value in seconds.items() if value)
     foreseen = next((run["predicted"] for run in reversed(fields["plan"]) if run["whole"]), None)
     spent += f" (foreseen {foreseen:.3g} s)" if foreseen and spent else ""
-    return (f"{fields['method']}, {fields['backend']} backend: {_count(counts['steps'], 'step')}, "
-            f"{_count(counts['rate'], 'rate')}, {_count(counts['jacobian'], 'Jacobian')}; "
+    return (f"{fields['method']}, {fields['backend']} backend: {count(counts['steps'], 'step')}, "
+            f"{count(counts['rate'], 'rate')}, {count(counts['jacobian'], 'Jacobian')}; "
             f"{spent or 'no time'}")

@@ -17,7 +17,7 @@ from sksundae.cvode import CVODE, CVODEPrecond
 
 from geocosserat.kernel.contract import Array, Kernel
 from geocosserat.solver.counted import Counted
-from geocosserat.solver.settings import BREATH, DENSE_LIMIT, KRYLOV, hopeless, stands_still
+from geocosserat.solver.settings import BREATH, DENSE_LIMIT, KRYLOV, Hope, stands_still
 from geocosserat.solver.trajectory import Frame, Progress, Trajectory
 
 TOO_MUCH_WORK = -1
@@ -43,7 +43,7 @@ def cvode(
     states = np.empty((len(times), kernel.size))
     states[0] = start
     solver.init_step(times[0], start)
-    done, reason, t, breaths = 1, "", float(times[0]), 0
+    done, reason, t, breaths, hope = 1, "", float(times[0]), 0, Hope()
     while done < len(times):
         before = t
         try:
@@ -61,7 +61,7 @@ def cvode(
             if stands_still(before, t, BREATH):
                 reason = f"CVODE stopped at t = {t:.6g}: its steps go nowhere; the motion may be singular here"
                 break
-            if not hopeless(breaths * BREATH, fraction):
+            if not hope.lost(breaths * BREATH, fraction):
                 continue
             reason = f"CVODE stopped at t = {t:.6g}: {breaths * BREATH} steps did not reach the end"
             break

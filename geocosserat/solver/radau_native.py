@@ -12,11 +12,14 @@ import numpy as np
 
 from geocosserat.kernel.compile import opened
 from geocosserat.kernel.contract import Array, Kernel, NativeKernel
-from geocosserat.solver.settings import LEAST_RTOL, SINGULAR, hopeless
+from geocosserat.solver.settings import LEAST_RTOL, SINGULAR, Hope
 from geocosserat.solver.trajectory import Frame, Progress, Trajectory
 
 LARGEST = 1000
 """Entries of the largest state it is meant for: its matrices are dense."""
+
+SOON, FAR = 20_000, 10_000_000
+"""Its steps are long: after so many, a run whose end is so many more away at their pace will never get there."""
 
 MOST_STAGES, PARTS = 7, 4
 METHOD = np.dtype(
@@ -132,7 +135,7 @@ def radau_native(
                            ffi.from_buffer(numbers, atol))  # fmt: skip
     if memory == ffi.NULL:
         raise MemoryError(f"no room for dense matrices of {kernel.size} unknowns")
-    done, reason, counts = 1, "", ffi.new("long[3]")
+    done, reason, counts, hope = 1, "", ffi.new("long[3]"), Hope(SOON, FAR)
     try:
         code = lib.radau_begin(memory, rows)
         if code < 0:
@@ -143,8 +146,8 @@ def radau_native(
             now = lib.radau_state(memory, counts)
             fraction = (min(now, float(times[done])) - first) / (last - first)
             if code == PAUSED:
-                if hopeless(counts[0], fraction):
-                    reason = f"Radau stopped at t = {now:.6g}: {counts[0]} steps did not reach the end"
+                if hope.lost(counts[0], fraction):
+                    reason = f"Radau stopped at t = {now:.6g}: {counts[0]} steps did not reach the end; {SINGULAR}"
             elif code < 0:
                 reason = f"Radau stopped at t = {now:.6g} after {counts[0]} steps: {REASONS[code]}"
             else:

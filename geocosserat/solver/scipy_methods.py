@@ -12,7 +12,7 @@ from scipy.integrate import BDF, LSODA, OdeSolver, Radau
 
 from geocosserat.kernel.contract import Array, Kernel
 from geocosserat.solver.counted import Counted
-from geocosserat.solver.settings import LEAST_RTOL, hopeless, stands_still
+from geocosserat.solver.settings import LEAST_RTOL, Hope, stands_still
 from geocosserat.solver.trajectory import Frame, Progress, Trajectory
 
 
@@ -30,7 +30,7 @@ def _integrate(
     counted = Counted(kernel)
     states = np.empty((len(times), kernel.size))
     states[0] = start
-    done, steps, reason = 1, 0, ""
+    done, steps, reason, hope = 1, 0, "", Hope()
     try:
         solver = method(
             _fresh(counted),
@@ -44,7 +44,7 @@ def _integrate(
     except (ArithmeticError, np.linalg.LinAlgError) as error:
         return Trajectory(times[:1].copy(), states[:1], counted.rates, counted.jacobians, 0, False, str(error))
     while solver.status == "running" and done < len(times):
-        if hopeless(steps, (solver.t - times[0]) / (times[-1] - times[0])):
+        if hope.lost(steps, (solver.t - times[0]) / (times[-1] - times[0])):
             reason = f"{method.__name__} stopped at t = {solver.t:.6g}: {steps} steps did not reach the end"
             break
         try:

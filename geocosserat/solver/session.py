@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from geocosserat.kernel.contract import Array, Kernel, NativeKernel
-from geocosserat.solver.settings import BREATH, NEWTON, SINGULAR, hopeless, stands_still
+from geocosserat.solver.settings import BREATH, NEWTON, SINGULAR, Hope, stands_still
 from geocosserat.solver.sundials import Sundials
 from geocosserat.solver.trajectory import Frame, Progress, Trajectory
 
@@ -107,7 +107,7 @@ class Session(ABC):
         states[0] = self.y
         reached_t: Any = self.ffi.new("double *", first)
         self._check(self.library.call("SetStopTime")(self.memory, last))
-        done, reason = 1, ""
+        done, reason, hope = 1, "", Hope()
         while done < len(times):
             before = reached_t[0]
             code = self.advance(float(times[done]), reached_t)
@@ -117,7 +117,7 @@ class Session(ABC):
                 if stands_still(before, now, BREATH):
                     reason = f"{self.name} stopped at t = {now:.6g}: its steps go nowhere; {SINGULAR}"
                     break
-                if not hopeless(steps, (now - first) / (last - first)):
+                if not hope.lost(steps, (now - first) / (last - first)):
                     continue
                 reason = f"{self.name} stopped at t = {now:.6g}: {steps} steps did not reach the end"
                 break

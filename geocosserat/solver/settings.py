@@ -13,7 +13,7 @@ NEWTON = 0.02
 more steps, and leave the ledger and the poses less accurate (measured on the examples)."""
 
 STEP_LIMIT, LONGEST = 1_000_000, 100_000_000
-"""Steps after which a run gives up, unless at this pace all of it takes no more than the longest may."""
+"""Steps after which a run gives up, unless at this pace the rest takes no more than the longest may."""
 
 BREATH = 500
 """Steps of CVODE between two looks at the world outside: progress, a user's interrupt, and whether it gets anywhere."""
@@ -32,6 +32,20 @@ def stands_still(before: float, now: float, steps: int = 1) -> bool:
     return now - before <= steps * STANDSTILL * abs(now)
 
 
-def hopeless(steps: int, fraction: float) -> bool:
-    """Whether so many steps for that fraction of a run mean that it would never end."""
-    return steps >= STEP_LIMIT and steps > LONGEST * fraction
+class Hope:
+    """Whether a run will ever end, judged by the pace of its last steps: since their number was half of what it is.
+
+    soon: steps before which nothing is judged, by default STEP_LIMIT; far: steps ahead that are too many, LONGEST.
+    """
+
+    def __init__(self, soon: int | None = None, far: int | None = None) -> None:
+        self.soon, self.far = soon or STEP_LIMIT, far or LONGEST
+        self.steps, self.fraction, self.ahead = 0, 0.0, 0.0
+
+    def lost(self, steps: int, fraction: float) -> bool:
+        """Where so many steps led to that fraction of the run."""
+        if steps >= 2 * self.steps:
+            made = max(fraction - self.fraction, sys.float_info.min)
+            self.ahead = (1.0 - fraction) * (steps - self.steps) / made
+            self.steps, self.fraction = steps, fraction
+        return steps >= self.soon and self.ahead > self.far

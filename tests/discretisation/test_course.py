@@ -142,6 +142,16 @@ def test_a_twist_that_jumps_is_followed_from_jump_to_jump(told: bool) -> None:
     assert np.abs(switched.edges - last).min() < 1e-15
 
 
+@pytest.mark.parametrize("width", [1e-3, 1e-6, 1e-9])
+def test_a_short_smooth_push_is_followed(width: float) -> None:
+    """However short: its integral is how far the end goes."""
+    e = parse(f"0.3*exp(-((t-0.371)/{width})**2)/{width}", frozenset("t"))
+    nothing = parse("0", frozenset("t"))
+    course = course_of((nothing, e, nothing), (), 1.0, 1.0)
+    np.testing.assert_allclose(course.at(0.3), 0.0, rtol=0, atol=1e-14)
+    np.testing.assert_allclose(course.at(1.0), [0.0, 0.3 * np.sqrt(np.pi), 0.0], rtol=1e-6, atol=1e-14)
+
+
 def test_there_is_no_pose_outside_the_run() -> None:
     """Beyond what rounding makes of its ends: not a number, rather than a polynomial gone astray."""
     found = course(["1", "0", "1"], 2.0)

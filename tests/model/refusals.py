@@ -44,6 +44,8 @@ REFUSALS: list[tuple[str, Any, str]] = [
     ("rod.motion", 2, "rod.motion: expected one of planar, spatial, found 2"),
     ("rod.length", MISSING, "rod.length: expected a positive number, found nothing; add it"),
     ("rod.length", 0, "rod.length: expected a positive number, found 0"),
+    ("rod.length", 1e100, r"rod.length: expected a length from 1e-30 to 1e\+30, found 1e\+100; choose a unit"),
+    ("rod.length", 1e-100, r"rod.length: expected a length from 1e-30 to 1e\+30, found 1e-100; choose a unit"),
     ("rod.length", "-load", "rod.length: expected a positive number, found '-load' = -2.0"),
     ("rod.length", "u", "rod.length: .* found 'u', which depends on u; remove u"),
     ("rod.length", "2*t",

@@ -22,6 +22,7 @@ STAGES = {
     "codegen": ("algebra", "model", "derivation", "discretisation"),
     "kernel": ("algebra", "model", "discretisation"),  # kernels are text by now: no sympy, no templates
     "solver": ("kernel.contract", "kernel.compile"),  # integrates anything that keeps the contract; knows no rods
+    "statics": ("kernel.contract",),  # where any such system rests; knows no rods
     "results": ("algebra.groups", "model.errors", "kernel.contract", "solver.trajectory"),
     "planning": ("algebra.groups", "discretisation.mesh", "model"),  # which setting, for which accuracy
     "referee": ("algebra",),  # judges statements about rods; knows no paper
@@ -59,6 +60,7 @@ LIBRARIES = {
 DISTRIBUTION = {"flint": "python-flint", "mpl_toolkits": "matplotlib", "sksundae": "scikit-sundae"}
 LATE = {
     # who may import inside a function, and what
+    "__main__": ("geocosserat.cli",),  # listens for interrupts first
     "conductor": EVERYWHERE,
     "cli": EVERYWHERE,
     "results": ("matplotlib", "mpl_toolkits", "xarray"),

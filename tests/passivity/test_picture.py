@@ -130,6 +130,7 @@ def test_a_curl_that_is_zero_everywhere_is_drawn() -> None:
     assert image(draw(curl=curl(0.0)), ".png").startswith(b"\x89PNG")
 
 
+@pytest.mark.slow
 def test_pictures_are_the_same_each_time() -> None:
     """Byte by byte, in each format."""
     for suffix, start in ((".png", b"\x89PNG"), (".svg", b"<?xml"), (".PDF", b"%PDF")):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from tests.marks import slow
 from tests.physics.scenes import Scene, changed, example, polynomial, semidiscrete, simulate, straight, tip
 from tests.references import axial_twist, cantilever_modes, circle, elastica, static_rod
 
@@ -115,7 +116,7 @@ def test_a_mode_of_the_cantilever_keeps_its_shape_and_fades_at_its_rate(index: i
 
 
 @pytest.mark.parametrize("force", [(0.0, -5.0), (-4.0, 1.0), (3.0, 2.0)])
-@pytest.mark.parametrize("k", [50.0, 1e4])
+@pytest.mark.parametrize("k", [slow(50.0), 1e4])
 def test_a_dead_tip_force_bends_the_rod_into_the_elastica(force: tuple[float, float], k: float) -> None:
     """Across, pushing and pulling: after a long time the closed form, positions, angles and strains."""
     scene = changed(

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from tests.marks import slow
 from tests.physics.scenes import Array, Scene, changed, example, simulate, straight, tip
 from tests.references import moving_rod, relaxing_cantilever
 
@@ -68,7 +69,7 @@ def test_low_degree_in_the_plane_is_second_order() -> None:
     assert errors[-1] < 1e-6
 
 
-@pytest.mark.parametrize(("degree", "order"), [(2, 4), (3, 6)])
+@pytest.mark.parametrize(("degree", "order"), [(2, 4), slow(3, 6)])
 def test_elements_of_degree_p_have_order_2p_at_the_tip(degree: int, order: int) -> None:
     """The nodal order of Gauss collocation."""
     errors = [_error(CANTILEVER, _relaxed(), n, degree) for n in (4, 8, 16)]
@@ -76,12 +77,15 @@ def test_elements_of_degree_p_have_order_2p_at_the_tip(degree: int, order: int) 
     assert np.all(rates > order - 0.5)
 
 
-@pytest.mark.parametrize(("degree", "bound"), [(4, 3e-3), (6, 2e-5), (8, 5e-7), (10, 2e-8), (12, 3e-9), (16, 1e-10)])
+@pytest.mark.parametrize(
+    ("degree", "bound"), [slow(4, 3e-3), slow(6, 2e-5), (8, 5e-7), slow(10, 2e-8), slow(12, 3e-9), (16, 1e-10)]
+)
 def test_one_element_in_space_converges_with_its_degree(degree: int, bound: float) -> None:
     """All stiffnesses and frictions different, curled at rest, a dead load that changes."""
     assert _error(SPATIAL, _drawn(), 1, degree) < bound
 
 
+@pytest.mark.slow
 def test_low_degree_in_space_is_second_order() -> None:
     """To the same tip as high degree."""
     errors = [_error(SPATIAL, _drawn(), n, 1, 1e-8, "auto") for n in (16, 32, 64, 128)]
@@ -89,6 +93,7 @@ def test_low_degree_in_space_is_second_order() -> None:
     assert errors[-1] < 1e-3
 
 
+@pytest.mark.slow
 def test_the_motion_in_space_is_that_of_an_independent_solution() -> None:
     """Positions and quaternions at Chebyshev points, implicit Runge-Kutta in time: no strains, no Lie bracket there."""
 
@@ -112,7 +117,7 @@ def test_the_motion_in_space_is_that_of_an_independent_solution() -> None:
     np.testing.assert_allclose(run.tip["rotation"], expected.rotation[-1], atol=5e-9)
 
 
-@pytest.mark.parametrize(("degree", "bound"), [(3, 1e-3), (5, 1e-5), (6, 3e-6), (8, 3e-8)])
+@pytest.mark.parametrize(("degree", "bound"), [slow(3, 1e-3), (5, 1e-5), slow(6, 3e-6), slow(8, 3e-8)])
 def test_stiff_stretch_and_shear_do_not_lock_the_rod(degree: int, bound: float) -> None:
     """One element: from k = 1e2 to 1e6, with rotational friction 1/k, the error stays what it was, and small."""
     errors = []

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from geocosserat.results.solution import Solution
 from tests.physics.scenes import Array, changed, example, simulate
@@ -36,6 +37,7 @@ def test_the_swimmer_swims_against_its_wave() -> None:
     assert middle[-1, 0] < middle[0, 0] - 0.05
 
 
+@pytest.mark.slow
 def test_the_tumbling_rod_turns_over_and_buckles() -> None:
     """By half a turn; meanwhile its ends come much nearer to each other, and go apart again."""
     solution = _solution("tumbling")
@@ -46,6 +48,7 @@ def test_the_tumbling_rod_turns_over_and_buckles() -> None:
     assert span[-1] > 0.9
 
 
+@pytest.mark.slow
 def test_the_ring_becomes_round_and_sinks() -> None:
     """All its points end at the radius 1 / (2 pi) from its middle; it is closed throughout."""
     solution = _solution("ring")
@@ -57,6 +60,7 @@ def test_the_ring_becomes_round_and_sinks() -> None:
     np.testing.assert_allclose(solution.position[:, -1], solution.position[:, 0], rtol=0, atol=1e-6)
 
 
+@pytest.mark.slow
 def test_the_magnetised_rod_follows_its_field() -> None:
     """In the end it turns as fast as the field does, behind it."""
     solution = _solution("magnetic")
@@ -78,6 +82,7 @@ def test_the_arch_swings_over() -> None:
                                rtol=0, atol=1e-6)  # fmt: skip
 
 
+@pytest.mark.slow
 def test_the_spun_rod_is_wound_up_by_turns_and_stays_straight() -> None:
     """Several turns between base and tip."""
     solution = _solution("spun")

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from tests.marks import slow
 from tests.physics.scenes import Array, Scene, changed, semidiscrete, simulate, straight
 
 PLANE = ([1e4, 5e3, 1.0], [1.0, 2.0, 0.01])
@@ -44,7 +45,7 @@ def _space(left: str, turned: list[float], shift: Array) -> Scene:
     return _in_the_world(6, left, turn, place)
 
 
-@pytest.mark.parametrize("left", ["clamped", "free"])
+@pytest.mark.parametrize("left", ["clamped", slow("free")])
 def test_a_scene_shifted_by_a_million_lengths_moves_as_it_did(left: str) -> None:
     """Strains do not change in a single bit; positions shift, up to their own rounding."""
     for make, still, shift in (
@@ -56,7 +57,7 @@ def test_a_scene_shifted_by_a_million_lengths_moves_as_it_did(left: str) -> None
         np.testing.assert_allclose(there.position - shift, here.position, rtol=0, atol=3e-10)
 
 
-@pytest.mark.parametrize("left", ["clamped", "free"])
+@pytest.mark.parametrize("left", [slow("clamped"), "free"])
 def test_a_scene_turned_as_a_whole_moves_as_it_did(left: str) -> None:
     """With its loads, by any angle, in the plane by many turns: equal strains, but for the rounding of the loads."""
     for make, turns in ((_plane, [2.0, -300.0]), (_space, [[1.2, -2.0, 0.7], [0.0, 3.1, 0.0]])):
@@ -69,7 +70,9 @@ def test_a_scene_turned_as_a_whole_moves_as_it_did(left: str) -> None:
             np.testing.assert_allclose(there.twist, here.twist, rtol=0, atol=1e-8)
 
 
-@pytest.mark.parametrize(("elements", "degree", "bound"), [(1, 8, 1e-5), (2, 8, 1e-8), (4, 8, 1e-12), (4, 16, 1e-13)])
+@pytest.mark.parametrize(
+    ("elements", "degree", "bound"), [(1, 8, 1e-5), (2, 8, 1e-8), (4, 8, 1e-12), slow(4, 16, 1e-13)]
+)
 def test_a_free_rod_in_the_plane_drags_exactly_what_weighs_on_it(elements: int, degree: int, bound: float) -> None:
     """Force and moment of the drag against the weight, at every frame: to the discretisation, then to round-off."""
     friction, weight = np.diag([1.0, 2.0, 5e-3]), np.array([0.0, -500.0])

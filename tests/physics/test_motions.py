@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from tests.marks import slow
 from tests.physics.scenes import Scene, changed, gap, semidiscrete, simulate, straight
 from tests.references import axial, jeffery, magnetic_rotor, sliding_helix, spun_rod
 
@@ -100,7 +101,7 @@ RIGID = {"rod.stiffness": [1e9, 1.0, 1.0], "rod.frozen": ["h2", "Pi"]}
 
 @pytest.mark.parametrize(
     ("gradient", "velocity"),
-    [([[0.0, 2.0], [0.0, 0.0]], [0.3, -0.1]), ([[0.3, 2.0], [-0.5, -0.3]], [0.0, 0.2])],
+    [([[0.0, 2.0], [0.0, 0.0]], [0.3, -0.1]), slow([[0.3, 2.0], [-0.5, -0.3]], [0.0, 0.2])],
     ids=["shear", "general"],
 )
 def test_a_stiff_rod_in_a_flow_follows_its_jeffery_orbit_and_carries_the_stress_of_it(
@@ -123,8 +124,8 @@ def test_a_stiff_rod_in_a_flow_follows_its_jeffery_orbit_and_carries_the_stress_
     assert abs(solution.angle[-1, 0] - 0.7) > np.pi
 
 
-@pytest.mark.parametrize("about", ["middle", "end"])
-@pytest.mark.parametrize("share", [0.7, 1.4])
+@pytest.mark.parametrize("about", ["middle", slow("end")])
+@pytest.mark.parametrize("share", [slow(0.7), 1.4])
 def test_a_stiff_magnetised_rod_follows_a_turning_field_or_slips(about: Any, share: float) -> None:
     """Below the critical spin with its lag, above it with a drift; free, or about a pin; the multipliers carry it."""
     spin = share * magnetic_rotor.Rotor(LENGTH, *PLANE[1][1:], 6.0, 1.0, about=about).critical
@@ -156,7 +157,9 @@ ARC = np.array([1.02, 0.05, 4.0])
 
 
 @pytest.mark.parametrize("turn", [ARC, HELIX], ids=["planar", "spatial"])
-@pytest.mark.parametrize("ends", [("free", "free"), ("driven", "free"), ("free", "driven"), ("driven", "driven")])
+@pytest.mark.parametrize(
+    "ends", [("free", "free"), slow(("driven", "free")), ("free", "driven"), slow(("driven", "driven"))]
+)
 def test_a_curled_rod_that_is_pushed_along_itself_slides_along_itself(ends: tuple[str, str], turn: Any) -> None:
     """Twenty turns and more by forces and couples fixed in it, or drawn by its ends: the exact helix, to 1e-8."""
     speed, d = 1.5, len(turn)

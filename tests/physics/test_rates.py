@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tests.marks import slow
 from tests.physics.scenes import Complex, Scene, changed, farthest, gap, growths, simulate, straight
 from tests.references import axial_twist, euler_bernoulli, linear_rod, ring, whirl
 
@@ -64,8 +65,8 @@ def _named(ends: tuple[Any, Any]) -> Any:
     ("ends", "bend"),
     [
         (("clamped", "free"), "1"),
-        (("free", "free"), "u*(1.3 - u)"),
-        (("free", "pinned"), "u"),
+        slow(("free", "free"), "u*(1.3 - u)"),
+        slow(("free", "pinned"), "u"),
     ],
     ids=lambda value: "-".join(value) if isinstance(value, tuple) else "",
 )

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from geocosserat.results.solution import Solution
+from tests.marks import slow
 from tests.physics.scenes import Array, Complex, Scene, changed, gap, simulate, straight
 from tests.references import linear_rod
 from tests.references.linear_rod import End
@@ -73,8 +74,8 @@ DRIVEN = linear_rod.driven(1.0, -1j, FREQUENCY)
     ("left", "right", "ends"),
     [
         (_driven(True), FREE, (DRIVEN, End("free"))),
-        (FREE, _driven(True), (End("free"), DRIVEN)),
-        (_driven(True), PINNED, (DRIVEN, End("pinned"))),
+        slow(FREE, _driven(True), (End("free"), DRIVEN)),
+        slow(_driven(True), PINNED, (DRIVEN, End("pinned"))),
         (CLAMPED, _driven(False), (End("clamped"), linear_rod.driven(1.0, 0.0, FREQUENCY))),
         (_driven(True), _driven(False), (DRIVEN, linear_rod.driven(1.0, 0.0, FREQUENCY))),
     ],
@@ -93,9 +94,9 @@ LOAD = {"force": ["0", WAVE], "torque": "2e-5*sin(9*t)"}
 @pytest.mark.parametrize(
     ("left", "right", "ends"),
     [
-        (FREE | LOAD, CLAMPED, (End("free", force=1.0, torque=-2j), End("clamped"))),
+        slow(FREE | LOAD, CLAMPED, (End("free", force=1.0, torque=-2j), End("clamped"))),
         (CLAMPED, FREE | LOAD | {"frame": "world"}, (End("clamped"), End("free", force=1.0, torque=-2j))),
-        (FREE | LOAD, FREE, (End("free", force=1.0, torque=-2j), End("free"))),
+        slow(FREE | LOAD, FREE, (End("free", force=1.0, torque=-2j), End("free"))),
         (PINNED | {"torque": WAVE}, CLAMPED, (End("pinned", torque=1.0), End("clamped"))),
         (CLAMPED, PINNED | {"torque": WAVE}, (End("clamped"), End("pinned", torque=1.0))),
         (PINNED, PINNED | {"torque": WAVE, "frame": "world"}, (End("pinned"), End("pinned", torque=1.0))),
@@ -117,8 +118,8 @@ def _bulge(u: Array) -> Array:
     ("effect", "profiles"),
     [
         ({"kind": "follower", "force": ["0", f"{WAVE}*(1 + u**2)"]}, {"force": _bulge}),
-        ({"kind": "weight", "force": ["0", f"{WAVE}*(1 + u**2)"]}, {"force": _bulge}),
-        ({"kind": "couple", "torque": f"{WAVE}*(1 + u**2)"}, {"couple": _bulge}),
+        slow({"kind": "weight", "force": ["0", f"{WAVE}*(1 + u**2)"]}, {"force": _bulge}),
+        slow({"kind": "couple", "torque": f"{WAVE}*(1 + u**2)"}, {"couple": _bulge}),
         ({"kind": "field", "moment": ["1 + u**2", "0"], "field": ["0", WAVE]}, {"couple": _bulge}),
         ({"kind": "flow", "gradient": [0, 0], "velocity": ["0", WAVE]}, {"force": 1.7}),
         ({"kind": "flow", "gradient": [[0, 0], [WAVE, 0]], "velocity": [0, 0]},
@@ -138,7 +139,7 @@ def test_a_steady_field_stiffens_what_another_one_shakes() -> None:
     _check(_shaken(PINNED, FREE, effects=[field]), End("pinned"), End("free"), rod, couple=3.0)
 
 
-@pytest.mark.parametrize(("left", "kind"), [(FREE, "free"), (PINNED, "pinned"), (CLAMPED, "clamped")])
+@pytest.mark.parametrize(("left", "kind"), [(FREE, "free"), slow(PINNED, "pinned"), slow(CLAMPED, "clamped")])
 def test_a_travelling_wave_of_curvature_moves_the_rod_and_takes_the_power_it_must(
     left: dict[str, Any], kind: Any
 ) -> None:

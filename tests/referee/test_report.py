@@ -84,6 +84,7 @@ def test_a_check_that_breaks_says_whose_it_is() -> None:
     assert raised.value.__notes__ == ["while judging (4) of the section 'broken'"]
 
 
+@pytest.mark.slow
 def test_processes_side_by_side_reach_the_same_verdicts(monkeypatch: pytest.MonkeyPatch) -> None:
     """In the same order; an error comes through with its note."""
     monkeypatch.setattr("geocosserat.referee.report.MANY", 1)

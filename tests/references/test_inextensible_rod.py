@@ -7,6 +7,7 @@ import pytest
 from numpy.polynomial import Polynomial
 from scipy.integrate import solve_ivp
 
+from tests.marks import slow
 from tests.references import elastica, euler_bernoulli, relaxing_cantilever
 from tests.references.inextensible_rod import Array, Collocation, Rod, solve
 
@@ -68,6 +69,7 @@ def test_a_dead_force_leads_to_the_elastica() -> None:
     assert found.angle[-1] == pytest.approx(exact.angle[0], abs=1e-11)
 
 
+@pytest.mark.slow
 def test_stiff_rods_tend_to_it() -> None:
     """Equal frictions: the stretching, shearing rod of `relaxing_cantilever` for k to infinity, extrapolated."""
     tips = [
@@ -81,7 +83,7 @@ def test_stiff_rods_tend_to_it() -> None:
     np.testing.assert_allclose(found, expected, atol=1e-10)
 
 
-@pytest.mark.parametrize("friction3", [0.0, 0.01])
+@pytest.mark.parametrize("friction3", [0.0, slow(0.01)])
 def test_energy_is_dissipated_or_was_given(friction3: float) -> None:
     """Stored + dissipated - work stays what it was: to 2e-9 for a smooth start, 1e-8 for a sudden load."""
     stored = 0.5 * float(((3.0 * Polynomial([1.0, 0.0, -3.0, 2.0])) ** 2).integ()(1.0))
@@ -108,8 +110,8 @@ def test_scipy_integrates_to_the_same_shape(friction3: float) -> None:
 
 CONVERGED = (
     (0.0, (0.0, 0.0), (0.0, 0.0), (0.70290611701798, 0.64701141010223)),
-    (0.0, FORCE, WEIGHT, (0.86767237165963, 0.46101781246989)),
-    (0.01, FORCE, (0.0, 0.0), (0.80294881083059, 0.55199572999611)),
+    slow(0.0, FORCE, WEIGHT, (0.86767237165963, 0.46101781246989)),
+    slow(0.01, FORCE, (0.0, 0.0), (0.80294881083059, 0.55199572999611)),
     (0.01, FORCE, WEIGHT, (0.85950762982808, 0.47251126283027)),
 )
 

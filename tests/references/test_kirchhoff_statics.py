@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from tests.marks import slow
 from tests.references import chebyshev, elastica, kirchhoff_statics, static_rod
 from tests.references.kirchhoff_statics import Array, Rod, solve
 
@@ -42,6 +43,7 @@ def test_in_the_plane_it_is_the_inextensible_elastica(force: tuple[float, float]
     np.testing.assert_allclose(shape.position[:, 2], 0.0, atol=1e-14)
 
 
+@pytest.mark.slow
 def test_stiff_rods_tend_to_it() -> None:
     """The stretching, shearing rod of `static_rod`, extrapolated from three k: tip and stress at the clamp to 1e-9."""
     found = solve(ROD)
@@ -103,7 +105,7 @@ def _collocated(rod: Rod, degree: int = 28) -> tuple[Array, Array]:
     return np.asarray(rod.base_position) + along, m
 
 
-@pytest.mark.parametrize("stiffness", [(0.8, 1.0, 1.3), (math.inf, 1.0, 1.3), (0.8, math.inf, math.inf)])
+@pytest.mark.parametrize("stiffness", [slow((0.8, 1.0, 1.3)), slow((math.inf, 1.0, 1.3)), (0.8, math.inf, math.inf)])
 def test_it_agrees_with_collocation(stiffness: tuple[float, float, float]) -> None:
     """In the world, on Chebyshev points, all loads, also with some of twist and bends held: to 1e-11."""
     rod = replace(ROD, stiffness=stiffness)

@@ -77,6 +77,7 @@ def test_the_jacobians_are_derivatives() -> None:
         np.testing.assert_allclose(jacobian, differences, atol=1e-7 * np.abs(jacobian).max())
 
 
+@pytest.mark.slow
 def test_in_the_plane_it_is_the_relaxing_cantilever() -> None:
     """Other unknowns, another formulation, no quaternions there: the same positions to 1e-9."""
     planar = relaxing_cantilever.Rod(1.0, 1e3, 1.0, 1.0, 1e-2, lambda u: 1.5 * u - 1.5 * u**3 + 0.75 * u**4)

@@ -189,6 +189,7 @@ def test_in_the_plane_it_is_the_elastica(force: tuple[float, float]) -> None:
     np.testing.assert_allclose(shape.turn, [static_rod.from_planar(e) for e in exact.strain], atol=1e-12)
 
 
+@pytest.mark.slow
 def test_dead_loads_do_as_much_work_as_the_rod_stores() -> None:
     """Raising the loads in proportion: energy = P . r(1) - integral of P . r over the share of the load."""
     rod = Rod(1.4, FULL, _curled, tip_force=(0.4, -0.6, 0.5))

@@ -1,0 +1,139 @@
+"""States of rest followed while one number p changes, past folds as well.
+
+Steps are measured along the curve (x, p), not in p, so that the curve may turn back: Keller's pseudo-arclength
+("Numerical solution of bifurcation and nonlinear eigenvalue problems", 1977).
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from geocosserat.kernel.contract import Array
+from geocosserat.statics.linear import Linear
+from geocosserat.statics.newton import NotAtRest, size
+from geocosserat.statics.system import System
+
+FIRST, LONGEST, SHORTEST = 0.02, 0.08, 1e-7
+"""Steps along the curve, in units of the interval of p and of natural sizes together."""
+
+EXACT, ROUNDS = 1e-9, 8
+
+
+class Family(Protocol):
+    """Systems that depend on a number p in [0, 1]."""
+
+    def residual(self, x: Array, p: float) -> Array: ...
+
+    def linear(self, x: Array, p: float) -> Linear: ...
+
+    def slope(self, x: Array, p: float) -> Array:
+        """How the residual changes with p."""
+
+    def moved(self, x: Array, step: Array) -> Array: ...
+
+
+@dataclass(frozen=True, eq=False)
+class Place:
+    """A point of a path: state, number, and the direction (along, onward) in which the path goes on; of length one,
+    where a length is the mean square of the entries of x, and p."""
+
+    x: Array
+    p: float
+    along: Array
+    onward: float
+
+
+@dataclass(frozen=True, eq=False)
+class Eased:
+    """A system whose forces at the start are balanced from outside, by p = 1 less and less."""
+
+    system: System
+    held: Array
+
+    def residual(self, x: Array, p: float) -> Array:
+        return self.system.residual(x) - (1.0 - p) * self.held
+
+    def linear(self, x: Array, p: float) -> Linear:
+        return self.system.linear(x)
+
+    def slope(self, x: Array, p: float) -> Array:
+        return self.held
+
+    def moved(self, x: Array, step: Array) -> Array:
+        return self.system.moved(x, step)
+
+
+def begin(family: Family, x: Array, p: float, sign: float) -> Place:
+    """The place of a state of rest, from which p grows (sign 1) or falls (-1)."""
+    return _directed(family, x, p, family.slope(x, p), np.zeros_like(x), sign)
+
+
+def follow(family: Family, place: Place, low: float = 0.0, high: float = 1.0, most: int = 1000) -> Iterator[Place]:
+    """The path of states of rest from a place on, without that one, until p leaves the interval from `low` to `high`.
+
+    Raises NotAtRest if it cannot be followed further.
+    """
+    length = FIRST
+    for _ in range(most):
+        try:
+            further, rounds = advance(family, place, length)
+            if not low <= further.p <= high:  # the last step ends at the end
+                yield _landed(family, place, further, min(max(further.p, low), high))
+                return
+        except NotAtRest as error:
+            length /= 2
+            if length < SHORTEST:
+                raise NotAtRest(f"the path of states ends at {place.p:.6g} of the interval: {error}") from error
+            continue
+        place = further
+        yield place
+        length = min(LONGEST, length * (1.5 if rounds <= 3 else 0.7 if rounds > 5 else 1.0))
+    raise NotAtRest(f"the path of states is longer than {most} steps")
+
+
+def advance(family: Family, place: Place, length: float) -> tuple[Place, int]:
+    """The place so much further, and after how many rounds of Newton's method on the plane across the path.
+
+    Raises NotAtRest if it does not converge there.
+    """
+    x, p = family.moved(place.x, length * place.along), place.p + length * place.onward
+    row, last = place.along / len(x), np.inf
+    try:
+        slope = family.slope(x, p)
+        for rounds in range(1, ROUNDS + 1):
+            short = length - float(row @ (x - place.x)) - place.onward * (p - place.p)
+            residual = family.residual(x, p)
+            step, more = family.linear(x, p).bordered(slope, row, place.onward, residual, short)
+            x, p = family.moved(x, step), p + more
+            now = max(size(step), abs(more))
+            if now < EXACT:
+                return _directed(family, x, p, slope, place.along, place.onward), rounds
+            if not now < max(0.5 * last, 1e-3):
+                break
+            last = now
+    except np.linalg.LinAlgError as error:
+        raise NotAtRest(str(error)) from error
+    raise NotAtRest("Newton's method does not converge across the path")
+
+
+def _landed(family: Family, one: Place, other: Place, p: float) -> Place:
+    """The place at p between two places."""
+    part = (p - one.p) / (other.p - one.p)
+    x = family.moved(one.x, part * (other.x - one.x))
+    for _ in range(ROUNDS):
+        step = family.linear(x, p).step(family.residual(x, p))
+        x = family.moved(x, step)
+        if size(step) < EXACT:
+            return _directed(family, x, p, family.slope(x, p), one.along, one.onward)
+    raise NotAtRest("Newton's method does not converge at the end of the interval")
+
+
+def _directed(family: Family, x: Array, p: float, slope: Array, along: Array, onward: float) -> Place:
+    """The place with its direction, on the side of the one that led there. slope: how the residual changes with p,
+    there or nearby: the direction only says where to look next."""
+    row = along / len(x)
+    d, e = family.linear(x, p).bordered(slope, row, onward, np.zeros_like(slope), 1.0)
+    length = float(np.sqrt(d @ d / len(x) + e * e))
+    return Place(x, p, d / length, e / length)
