@@ -278,7 +278,7 @@ def test_what_turns_with_the_rod_has_no_potential_and_no_symmetry(group: Group) 
     """Though the rod is in equilibrium; but a couple in the plane turns about one axis, and near any angle it has a
     potential."""
     assert max(asymmetry(with_effect(group, every(group)["follower"]), 37)) > 0.01
-    assert (max(asymmetry(with_effect(group, every(group)["couple"]), 37)) < CLOSE) is (group is SE2)
+    assert bool(max(asymmetry(with_effect(group, every(group)["couple"]), 37)) < CLOSE) == (group is SE2)
 
 
 def test_a_stiffness_that_is_not_symmetric_has_no_symmetry() -> None:
