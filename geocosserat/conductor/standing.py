@@ -185,7 +185,9 @@ def _is_held(model: RodModel) -> bool:
     """Whether it is known how the rod moves where it rests: not at all, or as its driven end does; and its stress does
     not answer to rates."""
     kinds = {model.left.kind, model.right.kind}
-    if model.joined or not (kinds & {"clamped", "driven"} or kinds == {"pinned"}):
+    if model.joined and model.effects:  # which may drive it on and on
+        return False
+    if not (model.joined or kinds & {"clamped", "driven"} or kinds == {"pinned"}):
         return False
     frame, answers = seen(model.group.space), set(rates(model.group))
     flows = any(present((*velocity, *spin)) for velocity, spin in (effect.medium(frame) for effect in model.effects))
