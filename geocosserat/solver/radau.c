@@ -22,8 +22,20 @@ enum { REACHED = 0, PAUSED = 1, STANDSTILL = -1, DIVERGED = -2, NOT_FINITE = -3,
 enum { PAST, MIDDLE, NOW }; /* a step before this one; where the middle of this one is foreseen; its start */
 enum { MOST_FAILURES = 60, BREATH = 500 }; /* tries of one step; steps between two looks at the world outside */
 
-/* A Jacobian serves on as long as Newton's method with it leaves less than this of an error in each round. */
-static const double RENEW = 0.05;
+/* A Jacobian serves on as long as Newton's method with it leaves less than this of an error in each round: a new one
+ * costs little more than a round, and is needed soon, for steps grow. */
+static const double RENEW = 0.01;
+
+/* What Newton's method should leave of an error in each round, and the power of the step with which that grows (measured
+ * on the examples): steps grow no further, else it fails before the error test does. */
+static const double CONTRACTION = 0.15, CONTRACTION_POWER = 2.5;
+
+/* How many times as long a step may be as the last one, if that is to foretell it: further ahead polynomials lead
+ * astray. Nor does it if its error was more than one over this of what it changed (of steps as long): it was too rough. */
+static const double FORESEEN = 2.5, SMOOTH = 10.0;
+
+/* A first step may change the state by this share of it, times what the order of the method makes of the tolerance. */
+static const double FIRST = 0.2;
 
 /* Share of the error test that is left to Newton's method, or the root of the tolerance in these units if that is less. So
  * little costs two rounds more a step, and makes the error that of the collocation, which is far below what the embedded
@@ -56,7 +68,8 @@ typedef struct radau {
     double t, end, h;          /* now; where to stop; the step to try */
     double last_h, last_error; /* of the step that led here, 0 where there is none */
     double share;              /* of Newton's last change that is still to come, as far as is known */
-    double contraction;        /* of Newton's method in the last step */
+    double roughness;          /* the error of the last step over what it changed */
+    double contraction;        /* of Newton's method in the last step, 0 where round-off hides it */
     int finite;                /* whether the last rate was */
     int of;                    /* where the Jacobian is from: PAST, MIDDLE or NOW */
     int factored;              /* whether the factors fit it and h */
@@ -657,16 +670,17 @@ static void interpolate(const method *m, double fraction, double *weight)
     }
 }
 
-/* Displacements to begin Newton's method with: where the last step leads. */
+/* Displacements to begin Newton's method with: where the last step leads, none if that is unknown. */
 static void predict(radau *r)
 {
     const int n = r->size, S = r->m.stages;
+    const double longer = r->h / r->last_h;
     memset(r->Z, 0, (size_t)S * n * sizeof *r->Z);
-    if (r->last_h == 0.0)
+    if (r->last_h == 0.0 || longer > FORESEEN || SMOOTH * r->roughness * pow(longer, S + 1) > 1.0)
         return;
     for (int s = 0; s < S; ++s) {
         double weight[MOST_STAGES];
-        interpolate(&r->m, 1.0 + r->m.node[s] * r->h / r->last_h, weight);
+        interpolate(&r->m, 1.0 + r->m.node[s] * longer, weight);
         weight[S - 1] -= 1.0;
         for (int k = 0; k < S; ++k)
             subtract(n, -weight[k], r->last_Z + k * n, r->Z + s * n);
@@ -701,7 +715,7 @@ static int solve_stages(radau *r, double *shrink)
 {
     const int count = r->m.stages * r->size, most = 7 + 2 * (r->m.stages - 3);
     const double floor = fmin(0.3, 100.0 * DBL_EPSILON / r->rtol), enough = fmax(floor, fmin(NEWTON, NEWTON_ROOT * sqrt(r->rtol)));
-    double before = 0.0, theta = 0.0, share = fmax(UNSEEN, pow(r->share, 0.8));
+    double before = 0.0, theta = 0.0, contraction = 0.0, share = fmax(UNSEEN, pow(r->share, 0.8));
     *shrink = 0.5;
     for (int round = 1; round <= most; ++round) {
         if (!evaluate_stages(r))
@@ -715,6 +729,7 @@ static int solve_stages(radau *r, double *shrink)
             if (theta >= 0.99 && size > floor)
                 return 0;
             share = theta < 0.99 ? theta / (1.0 - theta) : 1.0; /* the latter: round-off */
+            contraction = size > floor ? theta : contraction;
             const double missed = share * size * pow(theta, most - 1 - round) / enough;
             if (missed > 1.0) {
                 *shrink = 0.8 * pow(fmin(20.0, fmax(1e-4, missed)), -1.0 / (3 + most - round));
@@ -725,7 +740,7 @@ static int solve_stages(radau *r, double *shrink)
             r->Z[i] += r->change[i];
         if (share * size <= enough) {
             r->share = share;
-            r->contraction = theta;
+            r->contraction = contraction;
             return evaluate_stages(r) ? round : 0; /* the rates of what was found: of quadratures, and of the next start */
         }
         before = fmax(size, DBL_MIN);
@@ -782,8 +797,9 @@ static void rescale(radau *r)
 /* Takes up the stages as the step they are. */
 static void accept(radau *r, double error)
 {
-    const int n = r->size, S = r->m.stages;
+    const int n = r->size, S = r->m.stages, m = r->moving + r->fixed;
     double *swap = r->last_Z;
+    r->roughness = error / fmax(DBL_MIN, sqrt(squares(m, r->Z + (S - 1) * n, r->scale) / m));
     for (int i = 0; i < n; ++i)
         r->y[i] += r->Z[(S - 1) * n + i];
     memcpy(r->slope, r->F + (S - 1) * n, n * sizeof *r->slope);
@@ -840,6 +856,8 @@ static int step(radau *r)
         }
         if (r->last_h > 0.0) /* what the last two steps foretell */
             factor_h = fmin(factor_h, fmax(0.2, safety * r->h / r->last_h * pow(error * error / r->last_error, power)));
+        if (r->contraction > 0.0)
+            factor_h = fmin(factor_h, fmax(1.0, pow(CONTRACTION / r->contraction, 1.0 / CONTRACTION_POWER)));
         if (failures)
             factor_h = fmin(1.0, factor_h);
         r->t = last ? r->end : r->t + r->h;
@@ -927,13 +945,13 @@ radau *radau_new(const method *m, int size, int quadratures, const double *const
 /* A first step so short that the rate alone changes little by it. */
 static double first_step(const radau *r)
 {
-    const double span = r->end - r->t;
+    const double span = r->end - r->t, share = FIRST * pow(r->rtol, 1.0 / (r->m.stages + 1));
     double size = 0.0, speed = 0.0;
     for (int i = 0; i < r->moving; ++i) {
         size += r->y[i] * r->y[i] * r->scale[i] * r->scale[i];
         speed += r->slope[i] * r->slope[i] * r->scale[i] * r->scale[i];
     }
-    return speed * span * span > 1e-10 * size ? fmin(span, 0.01 * sqrt(fmax(size, 1e-10) / speed)) : 1e-3 * span;
+    return speed * span * span > 1e-10 * size ? fmin(span, share * sqrt(fmax(size, 1e-10) / speed)) : 1e-3 * span;
 }
 
 /* A state in the order of the problem. */
