@@ -20,7 +20,7 @@
 enum { MOST_STAGES = 7, PAIRS = (MOST_STAGES - 1) / 2 };
 enum { REACHED = 0, PAUSED = 1, STANDSTILL = -1, DIVERGED = -2, NOT_FINITE = -3, SINGULAR = -4 };
 enum { PAST, MIDDLE, NOW }; /* a step before this one; where the middle of this one is foreseen; its start */
-enum { MOST_FAILURES = 60, BREATH = 500 }; /* tries of one step; steps between two looks at the world outside */
+enum { MOST_FAILURES = 60, BREATH = 50 }; /* tries of one step; steps between two looks at the world outside */
 
 /* A Jacobian serves on as long as Newton's method with it leaves less than this of an error in each round: a new one
  * costs little more than a round, and is needed soon, for steps grow. */
@@ -886,30 +886,40 @@ int radau_begin(radau *r, double *out)
     return REACHED;
 }
 
-/* Goes on until t reaches `until`, never beyond `end`; the state there, between two steps if need be, into out [size].
- * Returns PAUSED before that if many steps were taken, and a number below zero where it cannot go on. */
-int radau_advance(radau *r, double until, double end, double *out)
+/* The state at an instant of the last step, into out [size]. */
+static void show(radau *r, double t, double *out)
 {
     const int n = r->size, S = r->m.stages;
-    r->end = end;
+    memcpy(r->trial, r->y, n * sizeof *r->trial);
+    if (r->t > t) {
+        double weight[MOST_STAGES];
+        interpolate(&r->m, 1.0 + (t - r->t) / r->last_h, weight);
+        weight[S - 1] -= 1.0;
+        for (int s = 0; s < S; ++s)
+            subtract(n, -weight[s], r->last_Z + s * n, r->trial);
+    }
+    put(r, r->trial, out);
+}
+
+/* Goes on through `times` [count], never beyond the last of them; states there, between two steps if need be, into the rows
+ * of `states` [count][size] from *done on, which is increased. Returns PAUSED before that if many steps were taken, and a
+ * number below zero where it cannot go on. */
+int radau_advance(radau *r, const double *times, int count, int *done, double *states)
+{
+    r->end = times[count - 1];
     if (r->h == 0.0)
         r->h = first_step(r);
-    for (int taken = 0; r->t < until; ++taken) {
+    for (int taken = 0; *done < count; ++taken) {
+        for (; *done < count && r->t >= times[*done]; ++*done)
+            show(r, times[*done], states + (size_t)*done * r->size);
+        if (*done == count)
+            break;
         if (taken == BREATH)
             return PAUSED;
         const int code = step(r);
         if (code != REACHED)
             return code;
     }
-    memcpy(r->trial, r->y, n * sizeof *r->trial);
-    if (r->t > until) {
-        double weight[MOST_STAGES];
-        interpolate(&r->m, 1.0 + (until - r->t) / r->last_h, weight);
-        weight[S - 1] -= 1.0;
-        for (int s = 0; s < S; ++s)
-            subtract(n, -weight[s], r->last_Z + s * n, r->trial);
-    }
-    put(r, r->trial, out);
     return REACHED;
 }
 
