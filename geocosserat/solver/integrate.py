@@ -54,9 +54,9 @@ def integrate(
     def piece(y: Array, instants: Array, told: Progress, noted: Frame) -> Trajectory:
         return chosen(kernel, y, instants, rtol, tolerance, told, noted)
 
+    if chosen is radau_native:  # begins where the constraints hold by itself, and warns of nothing
+        return in_pieces(piece, start, times, switches, progress, frame)
     with np.errstate(all="ignore"):  # what goes wrong becomes the reason of the trajectory
-        if chosen is radau_native:  # begins where the constraints hold by itself, and warns of nothing
-            return in_pieces(piece, start, times, switches, progress, frame)
         begun = _begun(kernel, float(times[0]), start)
         if isinstance(begun, str):
             return Trajectory(times[:1].copy(), start[None].copy(), 1, 0, 0, False, begun)

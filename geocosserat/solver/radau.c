@@ -20,10 +20,22 @@
 enum { MOST_STAGES = 7, PAIRS = (MOST_STAGES - 1) / 2 };
 enum { REACHED = 0, PAUSED = 1, STANDSTILL = -1, DIVERGED = -2, NOT_FINITE = -3, SINGULAR = -4 };
 enum { PAST, MIDDLE, NOW }; /* a step before this one; where the middle of this one is foreseen; its start */
-enum { MOST_FAILURES = 60, BREATH = 500 }; /* tries of one step; steps between two looks at the world outside */
+enum { MOST_FAILURES = 60, BREATH = 50 }; /* tries of one step; steps between two looks at the world outside */
 
-/* A Jacobian serves on as long as Newton's method with it leaves less than this of an error in each round. */
-static const double RENEW = 0.05;
+/* A Jacobian serves on as long as Newton's method with it leaves less than this of an error in each round: a new one
+ * costs little more than a round, and is needed soon, for steps grow. */
+static const double RENEW = 0.01;
+
+/* What Newton's method should leave of an error in each round, and the power of the step with which that grows (measured
+ * on the examples): steps grow no further, else it fails before the error test does. */
+static const double CONTRACTION = 0.15, CONTRACTION_POWER = 2.5;
+
+/* How many times as long a step may be as the last one, if that is to foretell it: further ahead polynomials lead
+ * astray. Nor does it if its error was more than one over this of what it changed (of steps as long): it was too rough. */
+static const double FORESEEN = 2.5, SMOOTH = 10.0;
+
+/* A first step may change the state by this share of it, times what the order of the method makes of the tolerance. */
+static const double FIRST = 0.2;
 
 /* Share of the error test that is left to Newton's method, or the root of the tolerance in these units if that is less. So
  * little costs two rounds more a step, and makes the error that of the collocation, which is far below what the embedded
@@ -56,34 +68,25 @@ typedef struct radau {
     double t, end, h;          /* now; where to stop; the step to try */
     double last_h, last_error; /* of the step that led here, 0 where there is none */
     double share;              /* of Newton's last change that is still to come, as far as is known */
-    double contraction;        /* of Newton's method in the last step */
+    double roughness;          /* the error of the last step over what it changed */
+    double contraction;        /* of Newton's method in the last step, 0 where round-off hides it */
     int finite;                /* whether the last rate was */
     int of;                    /* where the Jacobian is from: PAST, MIDDLE or NOW */
     int factored;              /* whether the factors fit it and h */
     int *order;                /* of the entries here: first what moves, then what constraints fix, then quadratures */
     int ordered;               /* whether the problem has them in this order too */
-    int width;                 /* of the matrices below: a multiple of four where inverses are made, see SMALL */
-    int *inner_pivots, *pivots[PAIRS + 1];
+    int width, inner;          /* of the matrices below, and of that of the constraints: padded, see BLOCK */
+    int *inner_rows, *rows[PAIRS + 1]; /* their order in the factors */
     double *numbers;           /* room for all that follows */
     double *y, *slope, *atol, *scale; /* the state, its rate, tolerances, one over what an error may be */
     double *Z, *last_Z, *F, *change;  /* [stages][size] displacements, now and in the last step; rates; Newton's change */
     double *trial, *error;
     double *asked, *told;                             /* a state and its rate in the order of the problem */
-    double *schur, *coupling, *feed, *answers, *both; /* of the Jacobian, see `condense` */
-    double *matrix[PAIRS + 1];                        /* factors, or inverses: a real matrix, then complex ones */
-    double *right, *room, *made;                      /* of linear systems, see `newton` */
+    double *schur, *coupling, *answers, *bound; /* of the Jacobian, see `condense` */
+    double *matrix[PAIRS + 1];                  /* factors: a real matrix, then complex ones */
+    double *right, *part, *gap, *closing, *asking, *made; /* of linear systems, see `newton` and `condense` */
+    double *room;                                         /* to factor in */
 } radau;
-
-/* Of what moves, up to as many entries get the inverse of their matrices, padded to a multiple of four: its loops have no
- * remainders and wait for nothing, which takes a third of the time of factors whose columns are as short as that. */
-enum { SMALL = 16 };
-
-/* Before a short inner loop: GCC would unroll it at once, and then not vectorise it. */
-#if defined(__GNUC__) && !defined(__clang__)
-#define ROLLED _Pragma("GCC unroll 1")
-#else
-#define ROLLED
-#endif
 
 /* The step over the method's eigenvalue, re + i im. */
 static void share_of(const radau *r, int k, double *re, double *im)
@@ -100,289 +103,199 @@ static inline void subtract(int n, double f, const double *restrict x, double *r
         y[j] -= f * x[j];
 }
 
-static void exchange(double *x, double *y)
+
+/* Matrices are stored by columns, and padded by ones on the diagonal to a multiple of BLOCK: no loop has a remainder.
+ *
+ * Factors are those by blocks. With A = [[P, Q], [R, T]], P of the size of a block, the inverse of P takes its place and
+ * -R / P that of R; then the same with T - R / P Q. A solution then waits once for a block, not once for a column. Rows
+ * are exchanged where a pivot is less than a tenth of the largest entry below it, as if columns went one by one. */
+enum { BLOCK = 4 };
+
+static int padded(int n)
 {
-    const double swap = *x;
-    *x = *y;
-    *y = swap;
+    return (n + BLOCK - 1) / BLOCK * BLOCK;
 }
 
-/* Matrices are stored by columns: their factors then work on whole columns, and so do solutions with them. */
-
-/* Factors A [n][n] in place, with partial pivoting; one over each pivot takes its place. Returns 1 if one is missing. */
-static int factor(int n, double *A, int *pivots)
+/* The row from k on whose entry of a column is to be the pivot, -1 if all are zero or not finite. im: NULL if it is real. */
+static inline int pivot_of(int k, int n, const double *re, const double *im)
 {
-    for (int k = 0; k < n; ++k) {
-        double *own = A + (size_t)k * n;
-        int best = k;
-        for (int i = k + 1; i < n; ++i)
-            if (fabs(own[i]) > fabs(own[best]))
-                best = i;
-        if (!(fabs(own[best]) > 0.0))
-            return 1;
-        pivots[k] = best;
-        if (best != k)
-            for (int j = 0; j < n; ++j)
-                exchange(A + (size_t)j * n + k, A + (size_t)j * n + best);
-        own[k] = 1.0 / own[k];
-        for (int i = k + 1; i < n; ++i)
-            own[i] *= own[k];
-        for (int j = k + 1; j < n; ++j)
-            subtract(n - k - 1, A[(size_t)j * n + k], own + k + 1, A + (size_t)j * n + k + 1);
-    }
-    return 0;
-}
-
-static void solve(int n, const double *A, const int *pivots, double *x)
-{
-    for (int k = 0; k < n; ++k)
-        exchange(x + k, x + pivots[k]);
-    for (int k = 0; k + 1 < n; ++k)
-        subtract(n - k - 1, x[k], A + (size_t)k * n + k + 1, x + k + 1);
-    for (int k = n - 1; k >= 0; --k) {
-        x[k] *= A[(size_t)k * n + k];
-        subtract(k, x[k], A + (size_t)k * n, x);
-    }
-}
-
-/* y -= f B for `count` rows of B [count][n], four at a time: y is then read and written a quarter as often. The factors f lie
- * so far apart. */
-static void subtract_rows(int n, int count, const double *f, int apart, const double *B, double *restrict y)
-{
-    int k = 0;
-    for (; k + 4 <= count; k += 4, f += 4 * (size_t)apart) {
-        const double *restrict a = B + (size_t)k * n, *restrict b = a + n, *restrict c = b + n, *restrict d = c + n;
-        const double p = f[0], q = f[apart], g = f[2 * (size_t)apart], h = f[3 * (size_t)apart];
-        for (int j = 0; j < n; ++j)
-            y[j] -= p * a[j] + q * b[j] + g * c[j] + h * d[j];
-    }
-    for (; k < count; ++k, f += apart)
-        subtract(n, *f, B + (size_t)k * n, y);
-}
-
-/* Solves for as many columns as `sides`, which are stored by rows: B [n][sides]. */
-static void solve_rows(int n, const double *A, const int *pivots, int sides, double *B)
-{
-    for (int k = 0; k < n; ++k)
-        for (int j = 0; j < sides; ++j)
-            exchange(B + (size_t)k * sides + j, B + (size_t)pivots[k] * sides + j);
-    for (int i = 1; i < n; ++i)
-        subtract_rows(sides, i, A + i, n, B, B + (size_t)i * sides);
-    for (int i = n - 1; i >= 0; --i) {
-        double *row = B + (size_t)i * sides;
-        subtract_rows(sides, n - 1 - i, A + (size_t)(i + 1) * n + i, n, row + sides, row);
-        for (int j = 0; j < sides; ++j)
-            row[j] *= A[(size_t)i * n + i];
-    }
-}
-
-/* (y, v) -= (f + i g) (x, u) for complex columns by real and imaginary parts. */
-static inline void subtract_complex(int n, double f, double g, const double *restrict x, const double *restrict u,
-                                    double *restrict y, double *restrict v)
-{
-    for (int j = 0; j < n; ++j) {
-        y[j] -= f * x[j] - g * u[j];
-        v[j] -= f * u[j] + g * x[j];
-    }
-}
-
-/* The same for a complex matrix: real parts [n][n], then imaginary ones. */
-static int factor_complex(int n, double *A, int *pivots)
-{
-    double *B = A + (size_t)n * n;
-    for (int k = 0; k < n; ++k) {
-        double *own = A + (size_t)k * n, *also = B + (size_t)k * n, size = 0.0;
-        int best = k;
-        for (int i = k; i < n; ++i)
-            if (fabs(own[i]) + fabs(also[i]) > size) {
-                size = fabs(own[i]) + fabs(also[i]);
-                best = i;
-            }
-        if (!(size > 0.0))
-            return 1;
-        pivots[k] = best;
-        if (best != k)
-            for (int j = 0; j < n; ++j) {
-                exchange(A + (size_t)j * n + k, A + (size_t)j * n + best);
-                exchange(B + (size_t)j * n + k, B + (size_t)j * n + best);
-            }
-        const double square = own[k] * own[k] + also[k] * also[k], f = own[k] / square, g = -also[k] / square;
-        own[k] = f;
-        also[k] = g;
-        for (int i = k + 1; i < n; ++i) {
-            const double re = own[i];
-            own[i] = f * re - g * also[i];
-            also[i] = f * also[i] + g * re;
+    double lane[BLOCK] = {0.0}, most = 0.0;
+    for (int i = k / BLOCK * BLOCK; i < n; i += BLOCK) /* in lanes, since a single one would wait for every comparison */
+        for (int l = 0; l < BLOCK; ++l) {
+            const double size = i + l < k ? 0.0 : fabs(re[i + l]) + (im ? fabs(im[i + l]) : 0.0);
+            lane[l] = size > lane[l] ? size : lane[l];
         }
-        for (int j = k + 1; j < n; ++j) {
-            const size_t at = (size_t)j * n;
-            subtract_complex(n - k - 1, A[at + k], B[at + k], own + k + 1, also + k + 1, A + at + k + 1, B + at + k + 1);
-        }
-    }
-    return 0;
+    for (int l = 0; l < BLOCK; ++l)
+        most = lane[l] > most ? lane[l] : most;
+    for (int i = k; i < n && most > 0.0; ++i)
+        if (fabs(re[i]) + (im ? fabs(im[i]) : 0.0) >= (i == k ? 0.1 : 1.0) * most)
+            return i;
+    return -1;
 }
 
-/* x: real parts [n], then imaginary ones. */
-static void solve_complex(int n, const double *A, const int *pivots, double *x)
+/* Rows i and k of A [columns][n]. */
+static void exchange_rows(int n, int columns, double *A, int *order, int i, int k)
 {
-    const double *B = A + (size_t)n * n;
-    double *y = x + n;
-    for (int k = 0; k < n; ++k) {
-        exchange(x + k, x + pivots[k]);
-        exchange(y + k, y + pivots[k]);
-    }
-    for (int k = 0; k + 1 < n; ++k) {
-        const size_t at = (size_t)k * n + k + 1;
-        subtract_complex(n - k - 1, x[k], y[k], A + at, B + at, x + k + 1, y + k + 1);
-    }
-    for (int k = n - 1; k >= 0; --k) {
-        const size_t at = (size_t)k * n;
-        const double re = x[k] * A[at + k] - y[k] * B[at + k], im = x[k] * B[at + k] + y[k] * A[at + k];
-        x[k] = re;
-        y[k] = im;
-        subtract_complex(k, re, im, A + at, B + at, x, y);
+    const int swap = order[i];
+    order[i] = order[k];
+    order[k] = swap;
+    for (int j = 0; j < columns; ++j, A += n) {
+        const double entry = A[i];
+        A[i] = A[k];
+        A[k] = entry;
     }
 }
 
-/* A [n][n] becomes its inverse, by Gauss and Jordan with partial pivoting. Returns 1 if there is none. */
-static inline int invert_of(const int n, double *A)
+/* y += A x for BLOCK columns of A that lie so far apart. */
+static inline void add_block(int n, int apart, const double *restrict A, const double *x, double *restrict y)
 {
-    int pivots[SMALL];
-    for (int k = 0; k < n; ++k) {
-        double own[SMALL], size = 0.0;
-        int best = k;
-        for (int i = 0; i < n; ++i)
-            own[i] = A[k * n + i];
-        for (int i = k; i < n; ++i)
-            if (fabs(own[i]) > size) {
-                size = fabs(own[i]);
-                best = i;
-            }
-        if (!(size > 0.0))
-            return 1;
-        pivots[k] = best;
-        const double f = 1.0 / own[best];
-        own[best] = own[k];
-        own[k] = 0.0;
-        for (int j = 0; j < n; ++j) {
-            double *restrict column = A + j * n;
-            const double x = f * column[best];
-            column[best] = column[k];
-            ROLLED
-            for (int i = 0; i < n; ++i)
-                column[i] -= x * own[i];
-            column[k] = x;
-        }
-        for (int i = 0; i < n; ++i)
-            A[k * n + i] = -f * own[i];
-        A[k * n + k] = f;
-    }
-    for (int k = n - 1; k >= 0; --k)
-        if (pivots[k] != k)
-            for (int i = 0; i < n; ++i)
-                exchange(A + k * n + i, A + pivots[k] * n + i);
-    return 0;
-}
-
-/* The same for a complex matrix. */
-static inline int invert_complex_of(const int n, double *A)
-{
-    int pivots[SMALL];
-    double *B = A + n * n;
-    for (int k = 0; k < n; ++k) {
-        double own[SMALL], also[SMALL], size = 0.0;
-        int best = k;
-        for (int i = 0; i < n; ++i) {
-            own[i] = A[k * n + i];
-            also[i] = B[k * n + i];
-        }
-        for (int i = k; i < n; ++i)
-            if (fabs(own[i]) + fabs(also[i]) > size) {
-                size = fabs(own[i]) + fabs(also[i]);
-                best = i;
-            }
-        if (!(size > 0.0))
-            return 1;
-        pivots[k] = best;
-        const double square = own[best] * own[best] + also[best] * also[best];
-        const double f = own[best] / square, g = -also[best] / square;
-        own[best] = own[k];
-        also[best] = also[k];
-        own[k] = also[k] = 0.0;
-        for (int j = 0; j < n; ++j) {
-            double *restrict re = A + j * n, *restrict im = B + j * n;
-            const double x = f * re[best] - g * im[best], y = f * im[best] + g * re[best];
-            re[best] = re[k];
-            im[best] = im[k];
-            ROLLED
-            for (int i = 0; i < n; ++i) {
-                re[i] -= x * own[i] - y * also[i];
-                im[i] -= x * also[i] + y * own[i];
-            }
-            re[k] = x;
-            im[k] = y;
-        }
-        for (int i = 0; i < n; ++i) {
-            A[k * n + i] = g * also[i] - f * own[i];
-            B[k * n + i] = -f * also[i] - g * own[i];
-        }
-        A[k * n + k] = f;
-        B[k * n + k] = g;
-    }
-    for (int k = n - 1; k >= 0; --k)
-        if (pivots[k] != k)
-            for (int i = 0; i < n; ++i) {
-                exchange(A + k * n + i, A + pivots[k] * n + i);
-                exchange(B + k * n + i, B + pivots[k] * n + i);
-            }
-    return 0;
-}
-
-/* x becomes A x. */
-static inline void apply_of(const int n, const double *restrict A, double *restrict x)
-{
-    double y[SMALL] = {0.0};
-    for (int j = 0; j < n; ++j)
-        for (int i = 0; i < n; ++i)
-            y[i] += x[j] * A[j * n + i];
+    const double *restrict a = A, *restrict b = a + apart, *restrict c = b + apart, *restrict d = c + apart;
+    const double f = x[0], g = x[1], h = x[2], k = x[3];
     for (int i = 0; i < n; ++i)
-        x[i] = y[i];
+        y[i] = y[i] + f * a[i] + g * b[i] + h * c[i] + k * d[i];
 }
 
-static inline void apply_complex_of(const int n, const double *restrict A, double *restrict x)
+/* The same for complex ones: A + i B, x + i u, y + i v. */
+static inline void add_complex_block(int n, int apart, const double *restrict A, const double *restrict B, const double *x,
+                                     const double *u, double *restrict y, double *restrict v)
 {
-    const double *restrict B = A + n * n;
-    double re[SMALL] = {0.0}, im[SMALL] = {0.0};
-    for (int j = 0; j < n; ++j)
-        ROLLED
+    for (int k = 0; k < BLOCK; k += 2) {
+        const double *restrict a = A + k * apart, *restrict b = a + apart;
+        const double *restrict c = B + k * apart, *restrict d = c + apart;
+        const double f = x[k], g = x[k + 1], p = u[k], q = u[k + 1];
         for (int i = 0; i < n; ++i) {
-            re[i] += x[j] * A[j * n + i] - x[n + j] * B[j * n + i];
-            im[i] += x[j] * B[j * n + i] + x[n + j] * A[j * n + i];
+            y[i] = y[i] + f * a[i] - p * c[i] + g * b[i] - q * d[i];
+            v[i] = v[i] + f * c[i] + p * a[i] + g * d[i] + q * b[i];
         }
+    }
+}
+
+/* Factors A [n][n] in place; order [n]: of its rows; own [n]: room. Returns 1 if it is singular. */
+static int factor(int n, double *restrict A, int *order, double *restrict own)
+{
+    for (int i = 0; i < n; ++i)
+        order[i] = i;
+    for (int first = 0; first < n; first += BLOCK) {
+        const int rows = n - first;
+        double *block = A + first * n + first;
+        for (int k = 0; k < BLOCK; ++k) { /* by Gauss and Jordan */
+            double *column = block + k * n;
+            const int best = pivot_of(first + k, n, column - first, NULL);
+            if (best < 0)
+                return 1;
+            if (best != first + k)
+                exchange_rows(n, n, A, order, first + k, best);
+            memcpy(own, column, rows * sizeof *own);
+            const double f = 1.0 / own[k];
+            own[k] = 0.0;
+            for (int j = 0; j < BLOCK; ++j) {
+                double *restrict y = block + j * n;
+                const double x = j == k ? 0.0 : f * y[k];
+                for (int i = 0; i < rows && j != k; ++i)
+                    y[i] -= x * own[i];
+                y[k] = x;
+            }
+            for (int i = 0; i < rows; ++i)
+                column[i] = -f * own[i];
+            column[k] = f;
+        }
+        for (int j = first + BLOCK; j < n; ++j)
+            add_block(rows - BLOCK, n, block + BLOCK, A + j * n + first, A + j * n + first + BLOCK);
+    }
+    return 0;
+}
+
+/* Solves A x = b for as many b as `sides`, so far apart; together, since each by itself waits for its blocks. */
+static void solve(int n, const double *A, const int *order, int sides, int apart, const double *b, double *x)
+{
+    for (int s = 0; s < sides; ++s)
+        for (int i = 0; i < n; ++i)
+            x[s * apart + i] = b[s * apart + order[i]];
+    for (int first = 0; first + BLOCK < n; first += BLOCK)
+        for (int s = 0; s < sides; ++s) {
+            double *own = x + s * apart + first;
+            add_block(n - first - BLOCK, n, A + first * n + first + BLOCK, own, own + BLOCK);
+        }
+    for (int first = n - BLOCK; first >= 0; first -= BLOCK)
+        for (int s = 0; s < sides; ++s) {
+            double *own = x + s * apart + first, y[BLOCK] = {0.0};
+            add_block(BLOCK, n, A + first * n + first, own, y);
+            for (int l = 0; l < BLOCK; ++l) {
+                own[l] = y[l];
+                y[l] = -y[l];
+            }
+            add_block(first, n, A + first * n, y, x + s * apart);
+        }
+}
+
+/* The same for a complex matrix: real parts [n][n], then imaginary ones; own [2 n]. */
+static int factor_complex(int n, double *restrict A, int *order, double *restrict own)
+{
+    double *restrict B = A + n * n, *restrict also = own + n;
+    for (int i = 0; i < n; ++i)
+        order[i] = i;
+    for (int first = 0; first < n; first += BLOCK) {
+        const int rows = n - first, corner = first * n + first;
+        for (int k = 0; k < BLOCK; ++k) {
+            double *re = A + corner + k * n, *im = B + corner + k * n;
+            const int best = pivot_of(first + k, n, re - first, im - first);
+            if (best < 0)
+                return 1;
+            if (best != first + k)
+                exchange_rows(n, 2 * n, A, order, first + k, best);
+            memcpy(own, re, rows * sizeof *own);
+            memcpy(also, im, rows * sizeof *also);
+            const double scale = 1.0 / (own[k] * own[k] + also[k] * also[k]), f = scale * own[k], g = -scale * also[k];
+            own[k] = also[k] = 0.0;
+            for (int j = 0; j < BLOCK; ++j) {
+                double *restrict y = A + corner + j * n, *restrict v = B + corner + j * n;
+                const double x = j == k ? 0.0 : f * y[k] - g * v[k], u = j == k ? 0.0 : f * v[k] + g * y[k];
+                for (int i = 0; i < rows && j != k; ++i) {
+                    y[i] -= x * own[i] - u * also[i];
+                    v[i] -= x * also[i] + u * own[i];
+                }
+                y[k] = x;
+                v[k] = u;
+            }
+            for (int i = 0; i < rows; ++i) {
+                re[i] = g * also[i] - f * own[i];
+                im[i] = -f * also[i] - g * own[i];
+            }
+            re[k] = f;
+            im[k] = g;
+        }
+        for (int j = first + BLOCK; j < n; ++j) {
+            const int at = j * n + first, next = at + BLOCK, below = corner + BLOCK;
+            add_complex_block(rows - BLOCK, n, A + below, B + below, A + at, B + at, A + next, B + next);
+        }
+    }
+    return 0;
+}
+
+/* b and x: real parts [n], then imaginary ones. */
+static void solve_complex(int n, const double *A, const int *order, const double *b, double *x)
+{
+    const double *B = A + n * n;
+    double *u = x + n;
     for (int i = 0; i < n; ++i) {
-        x[i] = re[i];
-        x[n + i] = im[i];
+        x[i] = b[order[i]];
+        u[i] = b[n + order[i]];
     }
-}
-
-/* The same by widths known to the compiler. */
-static int invert(int n, int complex, double *A)
-{
-    switch (n) {
-    case 4: return complex ? invert_complex_of(4, A) : invert_of(4, A);
-    case 8: return complex ? invert_complex_of(8, A) : invert_of(8, A);
-    case 12: return complex ? invert_complex_of(12, A) : invert_of(12, A);
-    default: return complex ? invert_complex_of(16, A) : invert_of(16, A);
+    for (int first = 0; first + BLOCK < n; first += BLOCK) {
+        const int below = first * n + first + BLOCK, next = first + BLOCK;
+        add_complex_block(n - next, n, A + below, B + below, x + first, u + first, x + next, u + next);
     }
-}
-
-static void apply(int n, int complex, const double *A, double *x)
-{
-    switch (n) {
-    case 4: complex ? apply_complex_of(4, A, x) : apply_of(4, A, x); break;
-    case 8: complex ? apply_complex_of(8, A, x) : apply_of(8, A, x); break;
-    case 12: complex ? apply_complex_of(12, A, x) : apply_of(12, A, x); break;
-    default: complex ? apply_complex_of(16, A, x) : apply_of(16, A, x); break;
+    for (int first = n - BLOCK; first >= 0; first -= BLOCK) {
+        double y[BLOCK] = {0.0}, v[BLOCK] = {0.0};
+        const int corner = first * n + first;
+        add_complex_block(BLOCK, n, A + corner, B + corner, x + first, u + first, y, v);
+        for (int l = 0; l < BLOCK; ++l) {
+            x[first + l] = y[l];
+            u[first + l] = v[l];
+            y[l] = -y[l];
+            v[l] = -v[l];
+        }
+        add_complex_block(first, n, A + first * n, B + first * n, y, v, x, u);
     }
 }
 
@@ -428,11 +341,25 @@ static const double *linearise(radau *r, int where)
     return r->jacobian(r->data, where == NOW ? r->t : r->t + r->m.node[middle] * r->h, r->asked);
 }
 
+/* Factors N, how constraints change with what they fix. Returns 1 if they do not fix it. */
+static int factor_bound(radau *r, const double *J)
+{
+    const int n = r->size, a = r->fixed, v = r->inner, *fixes = r->order + r->moving;
+    if (v > a)
+        memset(r->bound, 0, (size_t)v * v * sizeof *r->bound);
+    for (int j = 0; j < a; ++j)
+        for (int i = 0; i < a; ++i)
+            r->bound[j * v + i] = J[(size_t)fixes[i] * n + fixes[j]];
+    for (int i = a; i < v; ++i)
+        r->bound[i * v + i] = 1.0;
+    return factor(v, r->bound, r->inner_rows, r->room);
+}
+
 /* What the Jacobian says of what moves, once the constraints are solved for. With J = [[M, C], [K, N]], K and N of the
- * constraints: feed = -C / N above -1 / N, answers = -N \ K, schur = M - C N \ K. Returns 1 if they cannot be. */
+ * constraints: answers = -N \ K, schur = M - C N \ K. Returns 1 if they cannot be. */
 static int condense(radau *r, int where)
 {
-    const int n = r->size, d = r->moving, a = r->fixed;
+    const int n = r->size, d = r->moving, a = r->fixed, v = r->inner;
     const int *moves = r->order, *fixes = r->order + d;
     const double *J = linearise(r, where);
     for (int i = 0; i < d; ++i) {
@@ -442,32 +369,14 @@ static int condense(radau *r, int where)
         for (int j = 0; j < a; ++j)
             r->coupling[j * d + i] = row[fixes[j]];
     }
-    if (!a)
-        return 0;
-    double *N = r->matrix[0], *both = r->both; /* [K, 1] by rows, so that all columns are solved for at once */
-    memset(both, 0, (size_t)a * (d + a) * sizeof *both);
-    for (int i = 0; i < a; ++i) {
-        const double *row = J + (size_t)fixes[i] * n;
-        for (int j = 0; j < a; ++j)
-            N[j * a + i] = row[fixes[j]];
-        for (int j = 0; j < d; ++j)
-            both[i * (d + a) + j] = row[moves[j]];
-        both[i * (d + a) + d + i] = 1.0;
-    }
-    if (factor(a, N, r->inner_pivots))
+    if (a && factor_bound(r, J))
         return 1;
-    solve_rows(a, N, r->inner_pivots, d + a, both);
-    memset(r->feed, 0, (size_t)a * (d + a) * sizeof *r->feed);
-    for (int i = 0; i < a; ++i) {
+    for (int i = 0; i < a; ++i)
         for (int j = 0; j < d; ++j)
-            r->answers[j * a + i] = -both[i * (d + a) + j];
-        for (int j = 0; j < a; ++j)
-            r->feed[j * (d + a) + d + i] = -both[i * (d + a) + d + j];
-    }
-    for (int j = 0; j < a; ++j)
-        multiply(d, a, r->coupling, r->feed + j * (d + a) + d, r->feed + j * (d + a));
-    for (int j = 0; j < d; ++j)
-        multiply(d, a, r->coupling, r->answers + j * a, r->schur + j * d);
+            r->asking[j * v + i] = -J[(size_t)fixes[i] * n + moves[j]];
+    solve(v, r->bound, r->inner_rows, d, v, r->asking, r->answers);
+    for (int j = 0; j < d && a; ++j)
+        multiply(d, a, r->coupling, r->answers + j * v, r->schur + j * d);
     return 0;
 }
 
@@ -477,12 +386,13 @@ static int renew(radau *r, int where)
     return !(where == MIDDLE && r->last_h > 0.0 && !condense(r, MIDDLE)) && condense(r, NOW);
 }
 
-/* Factors  1 - g schur  for each g = h / eigenvalue, or their inverses. Returns 1 if one is singular. */
+/* Factors  1 - g schur  for each g = h / eigenvalue. Returns 1 if one is singular. */
 static int factor_all(radau *r)
 {
     const int d = r->moving, w = r->width;
     for (int k = 0; k <= r->m.stages / 2; ++k) {
         double *A = r->matrix[k], *B = A + w * w, re, im;
+        int *rows = r->rows[k];
         share_of(r, k, &re, &im);
         if (w > d)
             memset(A, 0, (k ? 2 : 1) * (size_t)w * w * sizeof *A);
@@ -494,21 +404,21 @@ static int factor_all(radau *r)
         }
         for (int i = 0; i < w; ++i)
             A[i * w + i] += 1.0;
-        if (d <= SMALL ? invert(w, k, A) : k ? factor_complex(d, A, r->pivots[k]) : factor(d, A, r->pivots[0]))
+        if (k ? factor_complex(w, A, rows, r->room) : factor(w, A, rows, r->room))
             return 1;
     }
     return 0;
 }
 
-/* Solves for one part of Newton's change of what moves, in `right` [width]; if it is complex, imaginary ones follow. */
+/* Solves for one part of Newton's change of what moves, from `right` [width] into `part`; if it is complex, imaginary ones
+ * follow. */
 static void solve_part(radau *r, int k)
 {
-    if (r->moving <= SMALL)
-        apply(r->width, k, r->matrix[k], r->right);
-    else if (k)
-        solve_complex(r->moving, r->matrix[k], r->pivots[k], r->right);
+    const int w = r->width;
+    if (k)
+        solve_complex(w, r->matrix[k], r->rows[k], r->right, r->part);
     else
-        solve(r->moving, r->matrix[0], r->pivots[0], r->right);
+        solve(w, r->matrix[0], r->rows[0], 1, w, r->right, r->part);
 }
 
 /* The rate, and whether all of it is finite. */
@@ -550,13 +460,13 @@ static int evaluate_stages(radau *r)
     return 1;
 }
 
-/* y += A x for A [columns][rows] and all stages, whose x and y are so far apart. */
-static inline void multiply_stages(const int S, int rows, int columns, const double *restrict A, const double *restrict x,
-                                   int next_x, double *restrict y, int next_y)
+/* y += A x for `rows` of A [columns][apart] and all stages, whose x and y are so far apart. */
+static inline void multiply_stages(const int S, int rows, int columns, int apart, const double *restrict A,
+                                   const double *restrict x, int next_x, double *restrict y, int next_y)
 {
     int j = 0;
     for (; j + 2 <= columns; j += 2) {
-        const double *restrict a = A + (size_t)j * rows, *restrict b = a + rows;
+        const double *restrict a = A + (size_t)j * apart, *restrict b = a + apart;
         for (int s = 0; s < S; ++s) {
             const double f = x[s * next_x + j], g = x[s * next_x + j + 1];
             double *restrict own = y + s * next_y;
@@ -566,23 +476,25 @@ static inline void multiply_stages(const int S, int rows, int columns, const dou
     }
     for (; j < columns; ++j)
         for (int s = 0; s < S; ++s)
-            subtract(rows, -x[s * next_x + j], A + (size_t)j * rows, y + s * next_y);
+            subtract(rows, -x[s * next_x + j], A + (size_t)j * apart, y + s * next_y);
 }
 
 /* Newton's change of all stages into `change`, from rates F at displacements Z. */
 static inline void newton_of(radau *r, const int S)
 {
-    const int n = r->size, d = r->moving, a = r->fixed, w = r->width, next = a ? d + a : n;
+    const int n = r->size, d = r->moving, a = r->fixed, w = r->width, v = r->inner, next = a ? d : n;
     const double *restrict F = r->F, *restrict Z = r->Z;
-    double *restrict x = r->right, *restrict change = r->change;
+    double *restrict right = r->right, *restrict change = r->change;
+    const double *restrict x = r->part;
     if (a) { /* the constraints are solved for: what moves then does so by itself */
-        double *made = r->made;
         for (int s = 0; s < S; ++s) {
-            memcpy(made + s * next, F + s * n, d * sizeof *made);
-            memset(made + s * next + d, 0, a * sizeof *made);
+            for (int i = 0; i < a; ++i)
+                r->gap[s * v + i] = -F[s * n + d + i];
+            memcpy(r->made + s * d, F + s * n, d * sizeof *r->made);
         }
-        multiply_stages(S, d + a, a, r->feed, F + d, n, made, next);
-        F = made;
+        solve(v, r->bound, r->inner_rows, S, v, r->gap, r->closing);
+        multiply_stages(S, d, a, d, r->coupling, r->closing, v, r->made, d);
+        F = r->made;
     }
     for (int k = 0; k <= S / 2; ++k) {
         double p[MOST_STAGES], q[MOST_STAGES], re, im;
@@ -600,8 +512,8 @@ static inline void newton_of(radau *r, const int S)
                     y += p[s] * Z[s * n + i];
                     z += q[s] * Z[s * n + i];
                 }
-                x[i] = re * f - im * g - y;
-                x[w + i] = re * g + im * f - z;
+                right[i] = re * f - im * g - y;
+                right[w + i] = re * g + im * f - z;
             }
         else
             for (int i = 0; i < d; ++i) {
@@ -610,10 +522,8 @@ static inline void newton_of(radau *r, const int S)
                     f += p[s] * F[s * next + i];
                     y += p[s] * Z[s * n + i];
                 }
-                x[i] = re * f - y;
+                right[i] = re * f - y;
             }
-        for (int i = d; i < w; ++i)
-            x[i] = x[w + i] = 0.0;
         solve_part(r, k);
         for (int s = 0; s < S; ++s) {
             double *restrict own = change + s * n;
@@ -627,12 +537,12 @@ static inline void newton_of(radau *r, const int S)
         }
     }
     for (int s = 0; s < S; ++s) {
-        memcpy(change + s * n + d, F + s * next + d, a * sizeof *change);
+        memcpy(change + s * n + d, r->closing + s * v, a * sizeof *change);
         for (int i = d + a; i < n; ++i)
             change[s * n + i] = 0.0;
     }
     if (a)
-        multiply_stages(S, a, d, r->answers, change, n, change + d, n);
+        multiply_stages(S, a, d, v, r->answers, change, n, change + d, n);
 }
 
 /* The same by numbers of stages known to the compiler. */
@@ -657,16 +567,17 @@ static void interpolate(const method *m, double fraction, double *weight)
     }
 }
 
-/* Displacements to begin Newton's method with: where the last step leads. */
+/* Displacements to begin Newton's method with: where the last step leads, none if that is unknown. */
 static void predict(radau *r)
 {
     const int n = r->size, S = r->m.stages;
+    const double longer = r->h / r->last_h;
     memset(r->Z, 0, (size_t)S * n * sizeof *r->Z);
-    if (r->last_h == 0.0)
+    if (r->last_h == 0.0 || longer > FORESEEN || SMOOTH * r->roughness * pow(longer, S + 1) > 1.0)
         return;
     for (int s = 0; s < S; ++s) {
         double weight[MOST_STAGES];
-        interpolate(&r->m, 1.0 + r->m.node[s] * r->h / r->last_h, weight);
+        interpolate(&r->m, 1.0 + r->m.node[s] * longer, weight);
         weight[S - 1] -= 1.0;
         for (int k = 0; k < S; ++k)
             subtract(n, -weight[k], r->last_Z + k * n, r->Z + s * n);
@@ -701,7 +612,7 @@ static int solve_stages(radau *r, double *shrink)
 {
     const int count = r->m.stages * r->size, most = 7 + 2 * (r->m.stages - 3);
     const double floor = fmin(0.3, 100.0 * DBL_EPSILON / r->rtol), enough = fmax(floor, fmin(NEWTON, NEWTON_ROOT * sqrt(r->rtol)));
-    double before = 0.0, theta = 0.0, share = fmax(UNSEEN, pow(r->share, 0.8));
+    double before = 0.0, theta = 0.0, contraction = 0.0, share = fmax(UNSEEN, pow(r->share, 0.8));
     *shrink = 0.5;
     for (int round = 1; round <= most; ++round) {
         if (!evaluate_stages(r))
@@ -715,6 +626,7 @@ static int solve_stages(radau *r, double *shrink)
             if (theta >= 0.99 && size > floor)
                 return 0;
             share = theta < 0.99 ? theta / (1.0 - theta) : 1.0; /* the latter: round-off */
+            contraction = size > floor ? theta : contraction;
             const double missed = share * size * pow(theta, most - 1 - round) / enough;
             if (missed > 1.0) {
                 *shrink = 0.8 * pow(fmin(20.0, fmax(1e-4, missed)), -1.0 / (3 + most - round));
@@ -725,7 +637,7 @@ static int solve_stages(radau *r, double *shrink)
             r->Z[i] += r->change[i];
         if (share * size <= enough) {
             r->share = share;
-            r->contraction = theta;
+            r->contraction = contraction;
             return evaluate_stages(r) ? round : 0; /* the rates of what was found: of quadratures, and of the next start */
         }
         before = fmax(size, DBL_MIN);
@@ -745,9 +657,8 @@ static double error_of(radau *r, const double *rate)
         r->error[i] = sum;
     }
     memcpy(r->right, r->error, d * sizeof *r->right);
-    memset(r->right + d, 0, (r->width - d) * sizeof *r->right);
     solve_part(r, 0); /* of what moves: constraints hold */
-    memcpy(r->error, r->right, d * sizeof *r->error);
+    memcpy(r->error, r->part, d * sizeof *r->error);
     memset(r->error + d, 0, a * sizeof *r->error);
     const double total = squares(n, r->error, r->scale);
     return sqrt(total / (d + quadratures));
@@ -782,8 +693,9 @@ static void rescale(radau *r)
 /* Takes up the stages as the step they are. */
 static void accept(radau *r, double error)
 {
-    const int n = r->size, S = r->m.stages;
+    const int n = r->size, S = r->m.stages, m = r->moving + r->fixed;
     double *swap = r->last_Z;
+    r->roughness = error / fmax(DBL_MIN, sqrt(squares(m, r->Z + (S - 1) * n, r->scale) / m));
     for (int i = 0; i < n; ++i)
         r->y[i] += r->Z[(S - 1) * n + i];
     memcpy(r->slope, r->F + (S - 1) * n, n * sizeof *r->slope);
@@ -840,6 +752,8 @@ static int step(radau *r)
         }
         if (r->last_h > 0.0) /* what the last two steps foretell */
             factor_h = fmin(factor_h, fmax(0.2, safety * r->h / r->last_h * pow(error * error / r->last_error, power)));
+        if (r->contraction > 0.0)
+            factor_h = fmin(factor_h, fmax(1.0, pow(CONTRACTION / r->contraction, 1.0 / CONTRACTION_POWER)));
         if (failures)
             factor_h = fmin(1.0, factor_h);
         r->t = last ? r->end : r->t + r->h;
@@ -854,14 +768,15 @@ static int step(radau *r)
 /* Room for the arrays of an integration. Returns 1 if there is none. */
 static int make_room(radau *r)
 {
-    const size_t n = r->size, d = r->moving, a = r->fixed, S = r->m.stages, w = r->width;
-    const size_t most = w > a ? w : a;
+    const size_t n = r->size, d = r->moving, a = r->fixed, S = r->m.stages, w = r->width, v = r->inner;
+    const size_t of_pair[PAIRS] = {2 * w * w, S > 3 ? 2 * w * w : 0, S > 5 ? 2 * w * w : 0};
     struct { double **array; size_t count; } rooms[] = {
         {&r->y, n}, {&r->slope, n}, {&r->atol, n}, {&r->scale, n}, {&r->trial, n}, {&r->error, n}, {&r->asked, n}, {&r->told, n},
         {&r->Z, S * n}, {&r->last_Z, S * n}, {&r->F, S * n}, {&r->change, S * n},
-        {&r->schur, d * d}, {&r->coupling, d * a}, {&r->feed, a * (d + a)}, {&r->answers, a * d}, {&r->both, a * (d + a)},
-        {&r->right, 2 * w}, {&r->room, a}, {&r->made, S * (d + a)},
-        {&r->matrix[0], most * most}, {&r->matrix[1], 2 * w * w}, {&r->matrix[2], 2 * w * w}, {&r->matrix[3], 2 * w * w},
+        {&r->schur, d * d}, {&r->coupling, d * a}, {&r->answers, v * d}, {&r->asking, v * d}, {&r->bound, v * v},
+        {&r->right, 2 * w}, {&r->part, 2 * w}, {&r->gap, S * v}, {&r->closing, S * v}, {&r->made, a ? S * d : 0},
+        {&r->room, 2 * (w > v ? w : v)},
+        {&r->matrix[0], w * w}, {&r->matrix[1], of_pair[0]}, {&r->matrix[2], of_pair[1]}, {&r->matrix[3], of_pair[2]},
     };
     size_t total = 0;
     for (size_t i = 0; i < sizeof rooms / sizeof *rooms; ++i)
@@ -895,16 +810,16 @@ radau *radau_new(const method *m, int size, int quadratures, const double *const
     for (int i = 0; i < size - quadratures; ++i)
         r->fixed += constrained[i] != 0.0;
     r->moving = size - quadratures - r->fixed;
-    const size_t d = r->moving, a = r->fixed;
-    r->width = r->moving <= SMALL ? (r->moving + 3) / 4 * 4 : r->moving;
-    int *counts = r->order = calloc(n + a + (PAIRS + 1) * d, sizeof *counts);
+    r->width = padded(r->moving);
+    r->inner = padded(r->fixed);
+    int *counts = r->order = calloc(n + r->inner + (PAIRS + 1) * r->width, sizeof *counts);
     if (make_room(r) || !counts) {
         radau_free(r);
         return NULL;
     }
-    r->inner_pivots = counts + n;
+    r->inner_rows = counts + n;
     for (int k = 0; k <= PAIRS; ++k)
-        r->pivots[k] = counts + n + a + k * d;
+        r->rows[k] = r->inner_rows + r->inner + k * r->width;
     r->ordered = 1;
     for (int i = 0, moving = 0, fixed = r->moving; i < size; ++i) {
         const int at = i >= size - quadratures ? i : constrained[i] != 0.0 ? fixed++ : moving++;
@@ -927,13 +842,13 @@ radau *radau_new(const method *m, int size, int quadratures, const double *const
 /* A first step so short that the rate alone changes little by it. */
 static double first_step(const radau *r)
 {
-    const double span = r->end - r->t;
+    const double span = r->end - r->t, share = FIRST * pow(r->rtol, 1.0 / (r->m.stages + 1));
     double size = 0.0, speed = 0.0;
     for (int i = 0; i < r->moving; ++i) {
         size += r->y[i] * r->y[i] * r->scale[i] * r->scale[i];
         speed += r->slope[i] * r->slope[i] * r->scale[i] * r->scale[i];
     }
-    return speed * span * span > 1e-10 * size ? fmin(span, 0.01 * sqrt(fmax(size, 1e-10) / speed)) : 1e-3 * span;
+    return speed * span * span > 1e-10 * size ? fmin(span, share * sqrt(fmax(size, 1e-10) / speed)) : 1e-3 * span;
 }
 
 /* A state in the order of the problem. */
@@ -947,21 +862,13 @@ static void put(const radau *r, const double *y, double *out)
  * Returns 1 if it has no solution. */
 static int settle(radau *r)
 {
-    const int n = r->size, a = r->fixed, *fixes = r->order + r->moving;
-    const double *J = linearise(r, NOW);
-    double *N = r->matrix[0], *gap = r->room;
-    for (int i = 0; i < a; ++i) {
-        gap[i] = r->slope[r->moving + i];
-        for (int j = 0; j < a; ++j)
-            N[j * a + i] = J[(size_t)fixes[i] * n + fixes[j]];
-    }
+    const int failed = factor_bound(r, linearise(r, NOW));
     r->of = PAST; /* its other parts change with what is solved for here */
-    if (factor(a, N, r->inner_pivots))
-        return 1;
-    solve(a, N, r->inner_pivots, gap);
-    for (int i = 0; i < a; ++i)
-        r->y[r->moving + i] -= gap[i];
-    return 0;
+    memcpy(r->gap, r->slope + r->moving, r->fixed * sizeof *r->gap);
+    solve(r->inner, r->bound, r->inner_rows, 1, r->inner, r->gap, r->closing);
+    for (int i = 0; i < r->fixed; ++i)
+        r->y[r->moving + i] -= r->closing[i];
+    return failed;
 }
 
 /* To be called once, before all else: the state at the start, as the constraints have it, into out [size]. Returns a number
@@ -979,30 +886,40 @@ int radau_begin(radau *r, double *out)
     return REACHED;
 }
 
-/* Goes on until t reaches `until`, never beyond `end`; the state there, between two steps if need be, into out [size].
- * Returns PAUSED before that if many steps were taken, and a number below zero where it cannot go on. */
-int radau_advance(radau *r, double until, double end, double *out)
+/* The state at an instant of the last step, into out [size]. */
+static void show(radau *r, double t, double *out)
 {
     const int n = r->size, S = r->m.stages;
-    r->end = end;
+    memcpy(r->trial, r->y, n * sizeof *r->trial);
+    if (r->t > t) {
+        double weight[MOST_STAGES];
+        interpolate(&r->m, 1.0 + (t - r->t) / r->last_h, weight);
+        weight[S - 1] -= 1.0;
+        for (int s = 0; s < S; ++s)
+            subtract(n, -weight[s], r->last_Z + s * n, r->trial);
+    }
+    put(r, r->trial, out);
+}
+
+/* Goes on through `times` [count], never beyond the last of them; states there, between two steps if need be, into the rows
+ * of `states` [count][size] from *done on, which is increased. Returns PAUSED before that if many steps were taken, and a
+ * number below zero where it cannot go on. */
+int radau_advance(radau *r, const double *times, int count, int *done, double *states)
+{
+    r->end = times[count - 1];
     if (r->h == 0.0)
         r->h = first_step(r);
-    for (int taken = 0; r->t < until; ++taken) {
+    for (int taken = 0; *done < count; ++taken) {
+        for (; *done < count && r->t >= times[*done]; ++*done)
+            show(r, times[*done], states + (size_t)*done * r->size);
+        if (*done == count)
+            break;
         if (taken == BREATH)
             return PAUSED;
         const int code = step(r);
         if (code != REACHED)
             return code;
     }
-    memcpy(r->trial, r->y, n * sizeof *r->trial);
-    if (r->t > until) {
-        double weight[MOST_STAGES];
-        interpolate(&r->m, 1.0 + (until - r->t) / r->last_h, weight);
-        weight[S - 1] -= 1.0;
-        for (int s = 0; s < S; ++s)
-            subtract(n, -weight[s], r->last_Z + s * n, r->trial);
-    }
-    put(r, r->trial, out);
     return REACHED;
 }
 

@@ -42,7 +42,7 @@ void *radau_new(const void *method, int size, int quadratures, const double *con
                 uintptr_t rate, uintptr_t jacobian, double t, const double *y, double rtol, const double *atol);
 int radau_begin(void *memory, double *out);
 void radau_free(void *memory);
-int radau_advance(void *memory, double until, double end, double *out);
+int radau_advance(void *memory, const double *times, int count, int *done, double *states);
 double radau_state(const void *memory, long *counts);
 """
 PAUSED = 1
@@ -125,35 +125,37 @@ def radau_native(
     """
     ffi, lib, numbers = _library()
     functions = cast(NativeKernel, kernel).functions()
-    first, last = float(times[0]), float(times[-1])
-    states = np.empty((len(times), kernel.size))
+    first, last, count = float(times[0]), float(times[-1]), len(times)
+    states = np.empty((count, kernel.size))
     states[0] = start
-    rows = ffi.from_buffer(numbers, states)
+    rows, instants = ffi.from_buffer(numbers, states), ffi.from_buffer(numbers, np.ascontiguousarray(times))
     memory = lib.radau_new(_method_at(stages_for(rtol)), kernel.size, functions.quadratures,
                            ffi.from_buffer(numbers, np.ascontiguousarray(kernel.algebraic)), functions.data,
                            functions.rate, functions.jacobian, first, rows, max(rtol, LEAST_RTOL),
                            ffi.from_buffer(numbers, atol))  # fmt: skip
     if memory == ffi.NULL:
         raise MemoryError(f"no room for dense matrices of {kernel.size} unknowns")
-    done, reason, counts, hope = 1, "", ffi.new("long[3]"), Hope(SOON, FAR)
+    reason, counts, reached, hope = "", ffi.new("long[3]"), ffi.new("int *", 1), Hope(SOON, FAR)
     try:
         code = lib.radau_begin(memory, rows)
         if code < 0:
             states[0] = start
             return Trajectory(times[:1].copy(), states[:1], 1, 0, 0, False, AT_START[code])
-        while done < len(times) and not reason:
-            code = lib.radau_advance(memory, float(times[done]), last, rows + done * kernel.size)
+        done = 1
+        while done < count and not reason:
+            code = lib.radau_advance(memory, instants, count, reached, rows)
             now = lib.radau_state(memory, counts)
-            fraction = (min(now, float(times[done])) - first) / (last - first)
+            for i in range(done, reached[0]):
+                frame(i, states[i])
+                progress((float(times[i]) - first) / (last - first), counts[0])
+            done = reached[0]
             if code == PAUSED:
+                fraction = (now - first) / (last - first)
                 if hope.lost(counts[0], fraction):
                     reason = f"Radau stopped at t = {now:.6g}: {counts[0]} steps did not reach the end; {SINGULAR}"
+                progress(fraction, counts[0])
             elif code < 0:
                 reason = f"Radau stopped at t = {now:.6g} after {counts[0]} steps: {REASONS[code]}"
-            else:
-                frame(done, states[done])
-                done += 1
-            progress(fraction, counts[0])
     finally:
         lib.radau_free(memory)
     return Trajectory(times[:done].copy(), states[:done], counts[1], counts[2], counts[0], not reason, reason)
