@@ -16,6 +16,7 @@ from geocosserat.model.scene import load_scene
 from geocosserat.statics.crossing import Spectrum
 from geocosserat.statics.linear import Linear
 from geocosserat.statics.newton import NotAtRest
+from geocosserat.statics.sparse import Sparse
 
 NEIGHBOUR = 1e-5
 """Of the interval: how far apart residuals are compared to see how they change with the value."""
@@ -94,7 +95,7 @@ class Rods:
     def residual(self, x: Array, p: float) -> Array:
         return self.at(p).system.residual(x)
 
-    def linear(self, x: Array, p: float) -> Linear:
+    def linear(self, x: Array, p: float) -> Linear | Sparse:
         return self.at(p).system.linear(x)
 
     def slope(self, x: Array, p: float) -> Array:

@@ -37,7 +37,7 @@ class Held:
         """Growth rates (k,) of small motions about the state of rest x, the fastest growing first, and the motions
         (n, k) in its coordinates. twist (nodes, d): how it moves as a whole; rate: about that of the slowest motion."""
         rod, system = self.rod, self.system
-        mesh, structure, linear, state = rod.mesh, rod.structure, system.linear(x), system.state(x)
+        mesh, structure, linear, state = rod.mesh, rod.structure, system.dense(x), system.state(x)
         d, points = structure.group.dimension, mesh.elements * mesh.degree
         frozen = np.repeat(structure.frozen, points)
         nodes = slice(0, -1) if structure.joined else slice(None)  # joined ends are one node

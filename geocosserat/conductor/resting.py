@@ -13,9 +13,7 @@ from geocosserat.planning.settings import SIZES
 from geocosserat.statics.find import find
 from geocosserat.statics.newton import NotAtRest, Rest
 from geocosserat.statics.pencil import Complex
-
-LARGEST = 1600
-"""Unknowns with which dense matrices are still a matter of seconds."""
+from geocosserat.statics.system import LARGEST
 
 LARGEST_BLIND = 250
 """Unknowns beyond which a state of rest is not searched for that coarser meshes do not have."""

@@ -17,7 +17,7 @@ from geocosserat.conductor.family import Over, Rods, read_over
 from geocosserat.conductor.folder import claim, give_back
 from geocosserat.conductor.kernels import kernel_text
 from geocosserat.conductor.report import rest_of
-from geocosserat.conductor.resting import LARGEST, Stander, State
+from geocosserat.conductor.resting import Stander, State
 from geocosserat.conductor.scene import SceneLike, load_any
 from geocosserat.conductor.simulate import Clock
 from geocosserat.conductor.standing import Standing, check_standing
@@ -31,6 +31,7 @@ from geocosserat.results.stability import Critical, Followed, Map, Point, Stabil
 from geocosserat.statics.crossing import Crossing, Looked, Spot, branches
 from geocosserat.statics.find import find
 from geocosserat.statics.newton import NotAtRest, newton
+from geocosserat.statics.system import LARGEST
 
 PICTURE, VECTORS, FINDINGS = "stability.png", "stability.svg", "stability.json"
 FILES = (PICTURE, VECTORS, FINDINGS)

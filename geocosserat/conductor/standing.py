@@ -28,7 +28,8 @@ from geocosserat.model.seen import seen
 from geocosserat.solver.consistent import consistent
 from geocosserat.statics.linear import Linear
 from geocosserat.statics.pencil import Complex
-from geocosserat.statics.system import System
+from geocosserat.statics.sparse import Sparse
+from geocosserat.statics.system import LARGEST, System
 
 STRAYS = 1e-2
 """A motion that moves an end from where it is held by more than this, relative to the rest, is not one of the rod's."""
@@ -54,7 +55,7 @@ class Standing:
     def poses(self, x: Array) -> Poses:
         return self.rod.poses(self.system.state(x))
 
-    def spectrum(self, linear: Linear, x: Array) -> tuple[Complex, Complex]:
+    def spectrum(self, linear: Linear | Sparse, x: Array) -> tuple[Complex, Complex]:
         """Growth rates and motions as `Linear.spectrum`, of the rod alone."""
         if self.held is not None:
             twist, _, _ = self.kernel.observe(0.0, self.system.state(x))
@@ -146,7 +147,9 @@ def stand(scene: Scene, size: tuple[int, int], kernel_text: Callable[[RodStructu
 
     Raises InputError if the scene turns for ever in what it sees of the world.
     """
-    held = _is_held(scene.model)
+    # the motions of a large rod are told by its own kernel: node by node their matrices are dense
+    large = size[0] * size[1] * scene.model.group.dimension > LARGEST
+    held = not large and _is_held(scene.model)
     still = held and "driven" not in (scene.model.left.kind, scene.model.right.kind)
     rod, text, kernel, system = _system(_plainly_dragged(scene) if still else scene, size, kernel_text)
     structure = rod.structure

@@ -7,6 +7,7 @@ import numpy as np
 
 from geocosserat.kernel.contract import Array
 from geocosserat.statics.linear import Linear
+from geocosserat.statics.sparse import Sparse
 from geocosserat.statics.system import System
 
 REACH = 1.0
@@ -36,7 +37,7 @@ class Rest:
     natural sizes), and how many rounds there were."""
 
     x: Array
-    linear: Linear
+    linear: Linear | Sparse
     left: float
     rounds: int
 
@@ -72,7 +73,7 @@ def newton(system: System, x: Array, most: int = 50) -> Rest:
     raise NotAtRest(f"Newton's method still takes steps of {last:.1g} after {most} rounds")
 
 
-def _cut(system: System, x: Array, linear: Linear, step: Array) -> Array:
+def _cut(system: System, x: Array, linear: Linear | Sparse, step: Array) -> Array:
     """x after as much of the step as brings it nearer to rest."""
     length = size(step)
     part = min(1.0, REACH / length)

@@ -13,6 +13,7 @@ import numpy as np
 from geocosserat.kernel.contract import Array
 from geocosserat.statics.linear import Linear
 from geocosserat.statics.newton import NotAtRest, size
+from geocosserat.statics.sparse import Sparse
 from geocosserat.statics.system import System
 
 FIRST, LONGEST, SHORTEST = 0.02, 0.08, 1e-7
@@ -26,7 +27,7 @@ class Family(Protocol):
 
     def residual(self, x: Array, p: float) -> Array: ...
 
-    def linear(self, x: Array, p: float) -> Linear: ...
+    def linear(self, x: Array, p: float) -> Linear | Sparse: ...
 
     def slope(self, x: Array, p: float) -> Array:
         """How the residual changes with p."""
@@ -55,7 +56,7 @@ class Eased:
     def residual(self, x: Array, p: float) -> Array:
         return self.system.residual(x) - (1.0 - p) * self.held
 
-    def linear(self, x: Array, p: float) -> Linear:
+    def linear(self, x: Array, p: float) -> Linear | Sparse:
         return self.system.linear(x)
 
     def slope(self, x: Array, p: float) -> Array:

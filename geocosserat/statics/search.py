@@ -9,6 +9,7 @@ from geocosserat.kernel.contract import Array
 from geocosserat.statics.linear import Linear
 from geocosserat.statics.newton import REACH, SMALL, NotAtRest, Rest, newton, relax, size
 from geocosserat.statics.pencil import Complex
+from geocosserat.statics.sparse import Sparse
 from geocosserat.statics.system import System
 
 MODES, PUSHES = 3, (0.5, 2.0)
@@ -18,7 +19,7 @@ bends in radians over the length."""
 NEAR = 1e-6
 """Distance in natural sizes within which a known state repels no more."""
 
-Spectrum = Callable[[Linear, Array], tuple[Complex, Complex]]
+Spectrum = Callable[[Linear | Sparse, Array], tuple[Complex, Complex]]
 Same = Callable[[Array, Array], bool]
 
 

@@ -10,8 +10,12 @@ from numpy.typing import NDArray
 
 from geocosserat.kernel.contract import Array, Kernel
 from geocosserat.statics.linear import Linear
+from geocosserat.statics.sparse import Sparse
 
 Mask = NDArray[np.bool_]
+
+LARGEST = 1600
+"""Unknowns with which dense matrices are still a matter of seconds."""
 
 
 class Closure(Protocol):
@@ -63,8 +67,12 @@ class System:
         gap = np.empty(0) if self.closure is None else self.closure.gap(y)
         return np.concatenate([rate[self.kept] / self.scale, gap])
 
-    def linear(self, x: Array) -> Linear:
-        """The equations linearised at x, on the motions that leave unit vectors so."""
+    def linear(self, x: Array) -> Linear | Sparse:
+        """The equations linearised at x, with dense matrices if those are not too large."""
+        return Sparse(self, x) if len(x) > LARGEST and self.closure is None else self.dense(x)
+
+    def dense(self, x: Array) -> Linear:
+        """The same as matrices, on the motions that leave unit vectors so."""
         y = self.state(x)
         J = self.kernel.jacobian(0.0, y)[np.ix_(self.kept, self.kept)]
         J = J / self.scale[:, None] * self.scale
