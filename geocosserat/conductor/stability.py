@@ -31,6 +31,7 @@ from geocosserat.results.stability import Critical, Followed, Map, Point, Stabil
 from geocosserat.statics.crossing import Crossing, Looked, Spot, branches
 from geocosserat.statics.find import find
 from geocosserat.statics.newton import NotAtRest, newton
+from geocosserat.statics.path import Family
 from geocosserat.statics.system import LARGEST
 
 PICTURE, VECTORS, FINDINGS = "stability.png", "stability.svg", "stability.json"
@@ -45,8 +46,8 @@ ROUGH = 1e-4
 MOST = 100
 """States on a branch that leaves the path sideways, at most."""
 
-BEFORE = 0.02
-"""Of the interval: how far before a crossing a finer mesh begins to look for it."""
+AROUND = 0.02
+"""Of the interval: how far around a crossing it is looked for on a finer mesh."""
 
 GRID = 25
 """Values of each of two keys that a map is made of."""
@@ -179,13 +180,11 @@ def _point(looked: Looked, spot: Spot, over: Over) -> Point:
 
 def _refined(scene: Scene, over: Over, state: State, looked: Looked, crossing: Crossing) -> Critical:
     """The same crossing on ever finer meshes, until its value settles."""
-    place = crossing.spot.place
-    rod = state.standing.rod
-    value, error = over.at(place.p), None
-    rods, x, found = looked.family, place.x, crossing
-    for size in _finer(scene, rod.mesh.elements, rod.mesh.degree):
+    mesh, value, error = state.standing.rod.mesh, over.at(crossing.spot.place.p), None
+    family, found = looked.family, crossing
+    for size in _finer(scene, mesh.elements, mesh.degree):
         try:
-            found, rods, x = _again(scene, over, size, looked.neutral, rods, x, found)
+            family, found = _again(scene, over, size, looked.neutral, family, found)
         except NotAtRest:
             break
         again = over.at(found.spot.place.p)
@@ -203,20 +202,19 @@ def _finer(scene: Scene, elements: int, degree: int) -> list[tuple[int, int]]:
 
 
 def _again(
-    scene: Scene, over: Over, size: tuple[int, int], neutral: int, rods: Any, x: Array, crossing: Crossing
-) -> tuple[Crossing, Any, Array]:
-    """A crossing on another mesh, looked for around where it was."""
-    place = crossing.spot.place
-    sign = 1.0 if place.onward >= 0 else -1.0
-    start = place.p - sign * BEFORE
-    before = newton(rods.at(start).system, place.x).x if 0.0 <= start <= 1.0 else x
-    start = start if 0.0 <= start <= 1.0 else place.p
-    looked, rest = _looked(scene, over, size, neutral, rods.at(start), before, start)
-    low, high = sorted((start, place.p + sign * BEFORE))
-    spots, _, _ = _walked(looked, looked.path(rest, start, sign, low, high), over)
+    scene: Scene, over: Over, size: tuple[int, int], neutral: int, rods: Any, crossing: Crossing
+) -> tuple[Family, Crossing]:
+    """A crossing on another mesh, looked for from the place before it on, and that mesh's family.
+
+    Raises NotAtRest if it is not there.
+    """
+    before, there = crossing.before, crossing.spot.place
+    looked, rest = _looked(scene, over, size, neutral, rods.at(before.p), before.x, before.p)
+    low, high = min(before.p, there.p) - AROUND, max(before.p, there.p) + AROUND
+    spots, _, _ = _walked(looked, looked.path(rest, before.p, 1.0 if before.onward > 0 else -1.0, low, high), over)
     for _, found in looked.crossings(spots):
         if (found.gains, found.number, found.kind) == (crossing.gains, crossing.number, crossing.kind):
-            return found, looked.family, found.spot.place.x
+            return looked.family, found
     raise NotAtRest("it is not there on another mesh")
 
 

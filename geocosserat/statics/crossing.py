@@ -39,10 +39,12 @@ class Spot:
 
 @dataclass(frozen=True, eq=False)
 class Crossing:
-    """Where a growth rate passes zero, the one of that number (0: the leading one). gains: it becomes positive.
-    frequency (1 / time, radians): 0 of a divergence. fold: the path turns back there."""
+    """Where a growth rate passes zero, the one of that number (0: the leading one). before: the place from which the
+    path leads there. gains: it becomes positive. frequency (1 / time, radians): 0 of a divergence. fold: the path turns
+    back there."""
 
     spot: Spot
+    before: Place
     number: int
     gains: bool
     frequency: float
@@ -111,7 +113,12 @@ class Looked:
         oscillates = frequency > OSCILLATES * self.rate
         fold = (one.place.onward > 0) != (other.place.onward > 0)
         return Crossing(
-            spot, number, other.unstable > one.unstable, frequency if oscillates else 0.0, fold and not oscillates
+            spot=spot,
+            before=one.place,
+            number=number,
+            gains=other.unstable > one.unstable,
+            frequency=frequency if oscillates else 0.0,
+            fold=fold and not oscillates,
         )
 
 
