@@ -219,6 +219,7 @@ def test_public_names_are_listed_and_explained(module: Any) -> None:
 
 def test_the_list_of_public_names() -> None:
     """What a script may rely on; a name is added on purpose, and never lost."""
-    assert geocosserat.__all__ == ["__version__", "check", "cost", "derive", "generate", "load", "paper", "run"]
+    commands = ["check", "cost", "derive", "equilibrium", "generate", "load", "paper", "run", "stability"]
+    assert geocosserat.__all__ == ["__version__", *commands]
     assert set(effects.__all__) >= {"Effect", "Key", "Seen", "register", "dot", "cross", "nothing", "sin", "abs_"}
     assert "heaviside" not in effects.__all__  # a jump in space would go unseen by the solver
