@@ -42,6 +42,12 @@ def test_newton_says_so_where_there_is_no_rest() -> None:
         newton(system(lambda y: 1.0 + y**2, [0.3]), np.array([0.3]))
 
 
+def test_a_force_to_which_nothing_gives_way_is_no_rest() -> None:
+    """A constant one: no step takes it away, and none is told to be left."""
+    with pytest.raises(NotAtRest, match="nothing gives way"):
+        newton(system(lambda y: 0.0 * y + 1.0, [0.3]), np.array([0.3]))
+
+
 def test_relaxation_leads_to_a_stable_rest_where_newton_stays_on_the_top() -> None:
     """From beside the top of a hill Newton's method climbs it, a rod runs down."""
     hill = system(two_wells, [0.1])

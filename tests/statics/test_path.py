@@ -96,6 +96,15 @@ def test_easing_leads_from_the_start_to_a_rest() -> None:
     assert abs(snap(last.x, 0.0)[0]) < 1e-9
 
 
+def test_a_top_between_two_wells_is_found_from_one_of_them() -> None:
+    """Nothing relaxes to it: only what is known repels Newton's method there."""
+    wells = system(lambda y: y - y**3, [1.0])
+    well = newton(wells, wells.x)
+    same = lambda x, y: bool(np.abs(x - y).max() < 1e-6)  # noqa: E731
+    found = list(others(wells, well, lambda linear, x: linear.spectrum(0.3), same))
+    assert sorted(rest.x[0] for rest in found) == pytest.approx([-1.0, 0.0], abs=1e-12)
+
+
 def test_all_rests_of_a_plane_with_four_wells_are_found() -> None:
     """Nine: four wells, four saddles, and the top, from the top."""
     wells = system(lambda y: y - y**3, [0.0, 0.0])
