@@ -61,10 +61,10 @@ def _reached(system: System, seed: Array, settles: bool, known: list[Rest]) -> I
         with suppress(NotAtRest):
             yield relax(system, seed)
     with suppress(NotAtRest):
-        yield _deflated(system, seed, [rest.x for rest in known])
+        yield deflated(system, seed, [rest.x for rest in known])
 
 
-def _deflated(system: System, x: Array, known: list[Array], most: int = 30) -> Rest:
+def deflated(system: System, x: Array, known: list[Array], most: int = 30) -> Rest:
     """The state that Newton's method leads to when those that are known repel it."""
     for _ in range(most):
         linear = system.linear(x)

@@ -9,7 +9,7 @@ from geocosserat.kernel.contract import Array
 from geocosserat.statics.crossing import Looked, branches
 from geocosserat.statics.newton import NotAtRest, newton
 from geocosserat.statics.path import Eased, begin, follow
-from geocosserat.statics.search import others
+from geocosserat.statics.search import deflated, others
 from tests.statics.systems import Varied, system
 
 
@@ -97,12 +97,25 @@ def test_easing_leads_from_the_start_to_a_rest() -> None:
 
 
 def test_a_top_between_two_wells_is_found_from_one_of_them() -> None:
-    """Nothing relaxes to it: only what is known repels Newton's method there."""
+    """Nothing relaxes to it."""
     wells = system(lambda y: y - y**3, [1.0])
     well = newton(wells, wells.x)
     same = lambda x, y: bool(np.abs(x - y).max() < 1e-6)  # noqa: E731
     found = list(others(wells, well, lambda linear, x: linear.spectrum(0.3), same))
     assert sorted(rest.x[0] for rest in found) == pytest.approx([-1.0, 0.0], abs=1e-12)
+
+
+def test_known_rests_repel_newtons_method() -> None:
+    """From beside one of them it goes to another one, and when all are known nowhere."""
+    wells = system(lambda y: y - y**3, [1.3])
+    one = newton(wells, wells.x).x
+    assert one == pytest.approx([1.0])
+    other = deflated(wells, wells.x, [one]).x
+    assert min(abs(other - [0.0]), abs(other - [-1.0])) < 1e-12
+    third = deflated(wells, wells.x, [one, other]).x
+    assert sorted([one[0], other[0], third[0]]) == pytest.approx([-1.0, 0.0, 1.0], abs=1e-12)
+    with pytest.raises(NotAtRest, match="no other state"):
+        deflated(wells, wells.x, [one, other, third])
 
 
 def test_all_rests_of_a_plane_with_four_wells_are_found() -> None:
