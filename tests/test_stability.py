@@ -183,6 +183,7 @@ def test_rates_of_a_passive_rod_are_real_and_those_of_an_odd_one_are_not(example
     assert odd.eigenvalues[0][1] > 1.0
 
 
+@pytest.mark.slow
 def test_a_map_has_the_line_where_the_column_buckles() -> None:
     """Over load and stretch: the signs are those of the closed form everywhere."""
     scene = {

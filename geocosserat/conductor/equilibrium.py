@@ -17,6 +17,7 @@ from geocosserat.conductor.resting import Stander, State
 from geocosserat.conductor.scene import SceneLike, load_any
 from geocosserat.conductor.simulate import Clock
 from geocosserat.conductor.standing import check_standing
+from geocosserat.model.errors import InputError
 from geocosserat.planning.settings import DEFAULT_ACCURACY, ROUND_OFF
 from geocosserat.results.netcdf import save
 from geocosserat.results.progress import progress
@@ -96,7 +97,7 @@ def equilibrium(
         found = _told(coarse, state, clock)
         if every:
             found = replace(found, solutions=(found, *_others(state, clock)))
-    except (NotAtRest, KeyboardInterrupt) as error:
+    except (NotAtRest, InputError, KeyboardInterrupt) as error:
         if folder is not None:
             give_back(folder)
         if isinstance(error, NotAtRest):

@@ -224,17 +224,16 @@ def _map(scene: Scene, one: Over, two: Over, state: State) -> Map:
     size = (mesh.elements, mesh.degree)
     growth = np.full((GRID, GRID), np.nan)
     parts = np.linspace(0.0, 1.0, GRID)
-    beside: Array | None = state.rest.x
+    beside = state.rest.x
     with progress("mapping", unit="rows") as report:
         for j, part in enumerate(parts):
             row = load_any(scene, [two.setting(float(part))])
             rods = Rods(row, one, size, kernel_text)
             x = beside
             for i, p in enumerate(parts):
-                standing = rods.at(float(p))
                 try:
-                    start = standing.system.x if x is None else x
-                    rest = find(standing.system, start)
+                    standing = rods.at(float(p))
+                    rest = find(standing.system, x)
                 except NotAtRest:
                     continue
                 x = rest.x
