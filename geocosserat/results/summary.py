@@ -16,6 +16,7 @@ from rich.text import Text
 
 from geocosserat.results.atomic import write_bytes
 from geocosserat.results.ledger import ledger
+from geocosserat.results.recurrence import recurrence
 from geocosserat.results.solution import Solution
 
 
@@ -27,6 +28,7 @@ def summary(
     `files` are the paths written; `scene` is the path of the scene, by default its title. `tip` is the right
     end (u = length), `base` the left one, both at the last frame; `until` is the time of that frame.
     """
+    recurs = recurrence(solution)
     fields = {
         "scene": solution.title if scene is None else scene,
         "title": solution.title,
@@ -44,6 +46,7 @@ def summary(
         "base": _end(solution, 0),
         "energy": {"start": float(solution.energy[0]), "end": float(solution.energy[-1])},
         "ledger": asdict(ledger(solution)),
+        "periodic": None if recurs is None else recurs.fields(),
         "error": {"requested": solution.requested, "estimated": solution.estimated},
         "contents": dict(solution.contents),
         "evaluations": dict(solution.evaluations),
@@ -73,6 +76,7 @@ def print_summary(solution: Solution, console: Console, files: Iterable[str | os
         ("energy", f"{digits(fields['energy']['start'])} at the start, "
                    f"{digits(fields['energy']['end'])} at the end"),
         ("ledger", _ledger(fields["ledger"])),
+        *(("period", _period(recurs)) for recurs in [fields["periodic"]] if recurs),
         ("error", f"estimated {digits(fields['error']['estimated'], 2)}, "
                   f"requested {digits(fields['error']['requested'], 2)} (of the length)"),
         ("cost", _cost(fields)),
@@ -126,6 +130,15 @@ def place(end: Mapping[str, Any]) -> str:
 def _ledger(terms: Mapping[str, float | None]) -> str:
     return (f"stored {digits(terms['stored'], 6)} + dissipated {digits(terms['dissipated'], 6)} "
             f"= work {digits(terms['work'], 6)}; residual {digits(terms['residual'], 2)}")
+
+
+def _period(recurs: Mapping[str, Any]) -> str:
+    text = (f"{digits(recurs['period'], 7)}, amplitude {digits(recurs['amplitude'], 6)}, "
+            f"from {digits(recurs['from'], 3)} on, to {digits(recurs['error'], 2)}")
+    if not recurs["drift"]:
+        return text
+    by = ", ".join(digits(x, 6) for x in recurs["drift"]["displacement"])
+    return f"{text}; each adds ({by}) and a turn of {digits(recurs['drift']['angle'], 6)}"
 
 
 def _time(fields: Mapping[str, Any]) -> str:

@@ -12,6 +12,7 @@ ROOT = Path(__file__).parents[2]
 HEAVY = {"sympy", "scipy", "h5py", "h5netcdf", "matplotlib", "rich", "xarray", "pandas", "pydantic", "jinja2"}
 ALLOWED = {
     "solution": set(), "ledger": set(), "atomic": set(), "seal": set(), "curves": set(),
+    "recurrence": set(),
     "netcdf": {"h5py", "h5netcdf"}, "summary": {"rich"}, "progress": {"rich"}, "picture": {"matplotlib"},
 }
 
