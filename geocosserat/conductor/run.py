@@ -89,12 +89,12 @@ def run(
     solution = solution_of(read, found, clock)
     for law in laws_of(read):
         solution = replace(solution, contents={**solution.contents, "law": _said_of(law)})
-    files: list[Path] = []
+    files = [] if folder is None else [folder / SOLUTION, folder / PICTURE, folder / SUMMARY]
+    fields = summary(solution, files, scene=read.path)
     if folder is not None:
-        files = [folder / SOLUTION, folder / PICTURE, folder / SUMMARY]
-        _write(solution, files, summary(solution, files, scene=read.path))
+        _write(solution, files, fields)
         keeper.finish()
-    return Run(solution, summary(solution, files, scene=read.path))
+    return Run(solution, fields)
 
 
 def _said_of(law: Law) -> dict[str, Any]:
