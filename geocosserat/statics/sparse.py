@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from numpy.typing import NDArray
 from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs
 
-from geocosserat.kernel.contract import Array
+from geocosserat.kernel.contract import Array, Kernel
 from geocosserat.statics.pencil import Complex
-
-if TYPE_CHECKING:
-    from geocosserat.statics.system import System
 
 COUNT = 12
 """Growth rates that are looked for, those nearest to the slowest one."""
@@ -21,17 +17,19 @@ LONG = 1e8
 
 
 class Sparse:
-    """M z' = J z at a state x of a system, as `Linear`; J is never written down."""
+    """M z' = J z at a state y (size,) of a kernel, as `Linear`; J is never written down. kept, scale (n,): the entries
+    that matter, and their natural sizes; rate: about how fast the rod relaxes (1 / time)."""
 
-    def __init__(self, system: System, x: Array) -> None:
-        self.system, self.kernel = system, system.kernel
-        self.moves = system.kernel.algebraic[system.kept] == 0.0
-        self.kernel.prepare(0.0, system.state(x))
+    def __init__(self, kernel: Kernel, y: Array, kept: NDArray[np.intp], scale: Array, rate: float) -> None:
+        self.kernel, self.kept, self.scale, self.rate = kernel, kept, scale, rate
+        self.moves = kernel.algebraic[kept] == 0.0
+        self._whole, self._found = np.zeros_like(y), np.zeros_like(y)
         self._factored: float | None = None
+        kernel.prepare(0.0, y)
 
     def step(self, f: Array, rate: float = 0.0) -> Array:
         """(n,) the step d with (rate M - J) d = f."""
-        time = 1.0 / max(rate, self.system.rate / LONG)
+        time = 1.0 / max(rate, self.rate / LONG)
         return self._solve(np.where(self.moves, time * f, -f), time)
 
     def unmet(self, f: Array, step: Array) -> Array:
@@ -63,12 +61,10 @@ class Sparse:
 
     def _solve(self, b: Array, time: float) -> Array:
         """M - time J, the rows of constraints as they are in J."""
-        system = self.system
         if self._factored != time:
             self.kernel.factor(time)
             self._factored = time
-        whole, out = np.zeros_like(system.start), np.zeros_like(system.start)
-        whole[system.kept] = b * system.scale
-        self.kernel.solve(whole, out)
-        found: Array = out[system.kept] / system.scale
+        self._whole[self.kept] = b * self.scale
+        self.kernel.solve(self._whole, self._found)
+        found: Array = self._found[self.kept] / self.scale
         return found

@@ -69,7 +69,9 @@ class System:
 
     def linear(self, x: Array) -> Linear | Sparse:
         """The equations linearised at x, with dense matrices if those are not too large."""
-        return Sparse(self, x) if len(x) > LARGEST and self.closure is None else self.dense(x)
+        if len(x) > LARGEST and self.closure is None:
+            return Sparse(self.kernel, self.state(x), self.kept, self.scale, self.rate)
+        return self.dense(x)
 
     def dense(self, x: Array) -> Linear:
         """The same as matrices, on the motions that leave unit vectors so."""
