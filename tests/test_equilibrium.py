@@ -12,8 +12,11 @@ from click.testing import CliRunner
 
 from geocosserat.cli import main
 from geocosserat.conductor.equilibrium import Equilibrium, NotReached, equilibrium
+from geocosserat.conductor.kernels import kernel_text
 from geocosserat.conductor.run import run
+from geocosserat.conductor.standing import stand
 from geocosserat.model.errors import InputError
+from geocosserat.model.scene import load_scene
 from geocosserat.results.netcdf import load
 from tests.references.stability import equilibria
 from tests.references.stability.equilibria import Equilibrium as Known
@@ -106,6 +109,29 @@ def test_a_ring_rests_closed(examples: Path) -> None:
     first, last = found.solution.position[0, 0], found.solution.position[0, -1]
     assert np.linalg.norm(last - first) < 1e-12
     assert np.ptp(found.solution.position[0, :, 1]) > 0.3
+
+
+def test_further_rests_are_as_exact_as_the_first() -> None:
+    """The straight state settles on coarse meshes, the buckled ones do not: each is refined by itself."""
+    found = equilibrium(column(6.0), every=True)
+    tip = next(known.tip for known in KNOWN if known.settings == {"load": 6.0})
+    bent = max(found.solutions or (), key=lambda one: one.tip["position"][1])
+    assert bent.tip["position"] == pytest.approx(tip, abs=1e-6)
+    assert 1e-12 < bent.error["estimated"] < 1e-6
+
+
+def test_states_that_differ_by_whole_turns_are_two() -> None:
+    """A straight rod that is twisted by a turn lies as one that is not."""
+    rod = {"motion": "spatial", "length": 1.0, "stiffness": [40.0, 16.0, 16.0, 0.8, 1.0, 1.0]}
+    clamps = {"left": {"kind": "clamped"}, "right": {"kind": "clamped"}}
+    standing = []
+    for turns in (0, 1):
+        twisted = {"strain": [1.0, 0.0, 0.0, f"{turns}*2*pi", 0.0, 0.0]}
+        scene = {"rod": {**rod, "friction": [1.0] * 6}, "ends": clamps, "start": twisted, "run": {"until": 1.0}}
+        standing.append(stand(load_scene(scene), (1, 8), kernel_text))
+    one, other = (rod.system.x for rod in standing)
+    assert standing[0].same(one, one)
+    assert not standing[0].same(one, other)
 
 
 def test_frictions_do_not_move_the_rest() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -17,7 +18,6 @@ from geocosserat.conductor.resting import Stander, State
 from geocosserat.conductor.scene import SceneLike, load_any
 from geocosserat.conductor.simulate import Clock
 from geocosserat.conductor.standing import check_standing
-from geocosserat.model.errors import InputError
 from geocosserat.planning.settings import DEFAULT_ACCURACY, ROUND_OFF
 from geocosserat.results.netcdf import save
 from geocosserat.results.progress import progress
@@ -34,6 +34,10 @@ COUNT = 6
 
 ZERO = 1e-9
 """Growth rates below this, relative to that at which the rod relaxes, are none."""
+
+
+LEAST = 1e-5
+"""And rates above this are some, however little is known of them."""
 
 
 class NotReached(Exception):
@@ -93,11 +97,12 @@ def equilibrium(
         claim(folder, overwrite, FILES)
     clock = Clock()
     try:
-        coarse, state = at_rest(Stander(read, kernel_text, clock), read.run.accuracy or DEFAULT_ACCURACY)
+        stander, wanted = Stander(read, kernel_text, clock), read.run.accuracy or DEFAULT_ACCURACY
+        coarse, state = at_rest(stander, wanted)
         found = _told(coarse, state, clock)
         if every:
-            found = replace(found, solutions=(found, *_others(state, clock)))
-    except (NotAtRest, InputError, KeyboardInterrupt) as error:
+            found = replace(found, solutions=(found, *_others(stander, wanted, state)))
+    except BaseException as error:
         if folder is not None:
             give_back(folder)
         if isinstance(error, NotAtRest):
@@ -107,16 +112,16 @@ def equilibrium(
 
 
 def at_rest(
-    stander: Stander, accuracy: float, rates: float = np.inf, count: int = COUNT
+    stander: Stander, accuracy: float, rates: float = np.inf, count: int = COUNT, first: State | None = None
 ) -> tuple[State | None, State]:
     """The state of rest on the last two of ever finer meshes, where positions are as accurate relative to the length,
-    and the leading growth rates relative to each.
+    and the leading growth rates relative to each. first: a state to go on from, on finer ones.
 
     Raises NotAtRest if there is none.
     """
     coarse: State | None = None
-    last: State | None = None
-    for state in stander.states():
+    last = first
+    for state in stander.states(first):
         coarse, last = last, state
         settled = state.estimated is not None and state.estimated <= max(accuracy, ROUND_OFF)
         if settled and (rates == np.inf or modes_of(coarse, state, count).errors.max(initial=0.0) <= rates):
@@ -132,7 +137,7 @@ def modes_of(coarse: State | None, state: State, count: int = COUNT) -> Modes:
     before = None if coarse is None else coarse.spectrum[0]
     changes = None if before is None else _changes(before, growth)
     vanish = ZERO * standing.system.rate + (np.zeros(len(growth)) if changes is None else 10 * changes)
-    neutral = (np.abs(growth) <= vanish) & (np.abs(growth) < 1e-3 * standing.system.rate)
+    neutral = (np.abs(growth) <= vanish) & (np.abs(growth) < LEAST * standing.system.rate)
     shapes = []
     for i in range(min(count, len(growth))):
         shape = standing.displaced(state.rest.x, motions[:, i])
@@ -159,15 +164,18 @@ def _told(coarse: State | None, state: State, clock: Clock) -> Equilibrium:
     return Equilibrium(solution, modes_of(coarse, state), state.rest.left, state.standing.scene.path)
 
 
-def _others(state: State, clock: Clock) -> list[Equilibrium]:
-    """Further states of rest, on the same mesh, those of least energy first."""
+def _others(stander: Stander, accuracy: float, state: State) -> list[Equilibrium]:
+    """Further states of rest, those of least energy first: found on the mesh of the first, then as exact as that."""
     standing = state.standing
     found = []
-    with clock("solve"), progress("searching", unit="states") as report:
+    with stander.clock("solve"), progress("searching", unit="states") as report:
         for rest in others(standing.system, state.rest, standing.spectrum, standing.same):
-            found.append(State(standing, rest, state.estimated, rest.rounds))
+            found.append(State(standing, rest, None, rest.rounds))
             report(0.5, len(found))
-    told = [_told(None, other, clock) for other in found]
+    told = []
+    for other in found:
+        with suppress(NotAtRest):  # then it was one of the mesh alone
+            told.append(_told(*at_rest(stander, accuracy, first=other), stander.clock))
     return sorted(told, key=lambda one: float(one.solution.energy[0]))
 
 

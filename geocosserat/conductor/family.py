@@ -2,7 +2,7 @@
 
 from collections import OrderedDict
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -16,6 +16,8 @@ from geocosserat.model.scene import load_scene
 from geocosserat.statics.crossing import Spectrum
 from geocosserat.statics.linear import Linear
 from geocosserat.statics.newton import NotAtRest
+from geocosserat.statics.path import Place
+from geocosserat.statics.pencil import Complex
 from geocosserat.statics.sparse import Sparse
 
 NEIGHBOUR = 1e-5
@@ -54,6 +56,9 @@ def read_over(text: str) -> Over:
         first = last = float("nan")
     if not equals or not key.strip() or not np.isfinite([first, last]).all() or first == last:
         raise InputError("KEY=A:B with two numbers that differ", repr(text), "write for example P=0:5", key="--over")
+    if key.strip().startswith("run."):
+        asked = "a value of the rod or of what acts on it"
+        raise InputError(asked, key.strip(), "how long a run takes has no part in rest", key="--over")
     return Over(key.strip(), first, last)
 
 
@@ -81,7 +86,7 @@ class Rods:
                 standing = self._stand(p)
             except InputError as error:
                 raise NotAtRest(f"no rod at {self.over.key} = {self.over.at(p):.6g}: {error}") from error
-            self._rods[p] = replace(standing, system=replace(standing.system, scale=self.first.system.scale))
+            self._rods[p] = standing.scaled(self.first.system.scale)
         self._rods.move_to_end(p)
         while len(self._rods) > KEPT:
             self._rods.popitem(last=False)
@@ -107,4 +112,8 @@ class Rods:
 
     @property
     def spectrum(self) -> Spectrum:
-        return lambda place: self.at(place.p).spectrum(self.linear(place.x, place.p), place.x)
+        def spectrum(place: Place) -> tuple[Complex, Complex]:
+            standing = self.at(place.p)
+            return standing.spectrum(None if standing.held else standing.system.linear(place.x), place.x)
+
+        return spectrum

@@ -7,7 +7,7 @@ they are held, frozen modes change nothing, and a friction may be zero: it makes
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import lstsq, solve
+from scipy.linalg import lstsq
 
 from geocosserat.discretisation.mesh import Array
 from geocosserat.discretisation.motions import strain_rates
@@ -84,8 +84,7 @@ def _rigid(A: Array, d: int) -> Array:
 def _solved(makes: Array, changes: Array, balance: Array) -> Array:
     """The twists that make the changes; of a closed rod those that push it nowhere."""
     if not len(balance):
-        found: Array = solve(makes, changes)
-        return found
+        return np.linalg.solve(makes, changes).astype(np.float64)
     nothing = np.zeros((len(balance), changes.shape[1]))
     least: Array = lstsq(np.concatenate([makes, balance]), np.concatenate([changes, nothing]))[0]
     return least

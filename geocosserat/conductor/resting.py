@@ -11,7 +11,7 @@ from geocosserat.model.records import Scene
 from geocosserat.planning.gap import position_gap
 from geocosserat.planning.settings import SIZES
 from geocosserat.statics.find import find
-from geocosserat.statics.newton import NotAtRest, Rest
+from geocosserat.statics.newton import NotAtRest, Rest, newton
 from geocosserat.statics.pencil import Complex
 from geocosserat.statics.system import LARGEST
 
@@ -51,20 +51,24 @@ class Stander:
             return ((run.elements or 1, run.degree or 16),)
         return tuple(size for size in SIZES if size[0] * size[1] * d <= LARGEST)
 
-    def states(self) -> Iterator[State]:
-        """The state of rest on ever finer meshes, from the start of the scene; meshes too coarse to have one are passed
-        over.
+    def states(self, first: State | None = None) -> Iterator[State]:
+        """The state of rest on ever finer meshes, from the start of the scene, or from a first state on; meshes too
+        coarse to have one are passed over.
 
         Raises NotAtRest if none has.
         """
-        last: State | None = None
+        last, done = first, 0
+        if first is not None:
+            done = first.standing.rod.mesh.elements * first.standing.rod.mesh.degree
         failure: NotAtRest | None = None
         for size in self.sizes():
+            if size[0] * size[1] <= done:
+                continue
             standing = self.on(size)
             guess = standing.system.x if last is None else standing.from_mesh(last.standing, last.rest.x)
             try:
-                with self.clock("solve"):
-                    rest = find(standing.system, guess)
+                with self.clock("solve"):  # a state that others lie beside is not to be left for one of them
+                    rest = find(standing.system, guess) if first is None else newton(standing.system, guess)
             except NotAtRest as error:
                 failure = error
                 if len(standing.system.x) > LARGEST_BLIND:

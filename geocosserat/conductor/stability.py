@@ -31,7 +31,7 @@ from geocosserat.results.stability import Critical, Followed, Map, Point, Stabil
 from geocosserat.statics.crossing import Crossing, Looked, Spot, branches
 from geocosserat.statics.find import find
 from geocosserat.statics.newton import NotAtRest, newton
-from geocosserat.statics.path import Family
+from geocosserat.statics.path import Family, Place
 from geocosserat.statics.system import LARGEST
 
 PICTURE, VECTORS, FINDINGS = "stability.png", "stability.svg", "stability.json"
@@ -98,7 +98,7 @@ def stability(
         claim(folder, overwrite, FILES)
     try:
         record = _found(read, keys, count)
-    except (NotAtRest, InputError, KeyboardInterrupt) as error:
+    except BaseException as error:
         if folder is not None:
             give_back(folder)
         if isinstance(error, NotAtRest):
@@ -120,29 +120,38 @@ def _found(scene: Scene, keys: Sequence[Over], count: int) -> Stability:
     if rough is None:
         return record
     if len(keys) == 1:
-        return replace(record, followed=_followed(scene, keys[0], rough))
-    return replace(record, map=_map(scene, keys[0], keys[1], rough))
+        return replace(record, followed=_followed(scene, keys[0], rough, record.modes.neutral))
+    return replace(record, map=_map(scene, keys[0], keys[1], rough, record.modes.neutral))
 
 
-def _followed(scene: Scene, over: Over, state: State) -> Followed:
-    """The branch of a state of rest, its crossings, and what leaves it sideways."""
+def _followed(scene: Scene, over: Over, state: State, neutral: int) -> Followed:
+    """The branch of a state of rest, its crossings, and what leaves it sideways.
+
+    Raises NotAtRest if there is no branch.
+    """
     mesh = state.standing.rod.mesh
-    neutral = modes_of(None, state).neutral
     looked, rest = _looked(scene, over, (mesh.elements, mesh.degree), neutral, state.standing, state.rest.x)
     spots, main, reason = _walked(looked, looked.path(rest, 0.0), over)
-    numbered = list(looked.crossings(spots))
+    if not spots:
+        raise NotAtRest(reason)
+    numbered: list[tuple[int, Crossing]] = []
+    try:
+        for found in looked.crossings(spots):
+            numbered.append(found)
+    except NotAtRest as error:
+        reason = reason or f"a crossing was lost: {error}"
     crossings = [crossing for _, crossing in numbered]
     exact = [_refined(scene, over, state, looked, crossing) for crossing in crossings]
     points = list(main)
     for shift, (index, crossing) in enumerate(numbered):
         points.insert(index + 1 + shift, _point(looked, crossing.spot, over))
-    found = [tuple(points)]
-    first = next((crossing for crossing in crossings if crossing.gains), None)
+    followed = [tuple(points)]
+    first = next((crossing for crossing in crossings if crossing.gains and crossing.number == 0), None)
     if first is not None and first.kind == "divergence" and not first.fold:
         for place in branches(first):
             _, side, _ = _walked(looked, islice(looked.switched(place), MOST), over)
-            found.append((_point(looked, first.spot, over), *side))
-    return Followed(over.key, (over.first, over.last), tuple(found), tuple(exact), reason)
+            followed.append((_point(looked, first.spot, over), *side))
+    return Followed(over.key, (over.first, over.last), tuple(followed), tuple(exact), reason)
 
 
 def _looked(
@@ -191,7 +200,15 @@ def _refined(scene: Scene, over: Over, state: State, looked: Looked, crossing: C
         error, value = abs(again - value), again
         if error <= RATES * max(abs(value), abs(over.last - over.first) * RATES):
             break
-    return Critical(value, found.kind, found.frequency, crossing.gains, crossing.fold, error)
+    return Critical(
+        value=value,
+        kind=found.kind,
+        frequency=found.frequency,
+        gains=crossing.gains,
+        lost=crossing.gains and crossing.number == 0,
+        fold=crossing.fold,
+        error=error,
+    )
 
 
 def _finer(scene: Scene, elements: int, degree: int) -> list[tuple[int, int]]:
@@ -218,7 +235,7 @@ def _again(
     raise NotAtRest("it is not there on another mesh")
 
 
-def _map(scene: Scene, one: Over, two: Over, state: State) -> Map:
+def _map(scene: Scene, one: Over, two: Over, state: State, neutral: int) -> Map:
     """The leading growth rate over two values: each row of states follows its neighbours."""
     mesh = state.standing.rod.mesh
     size = (mesh.elements, mesh.degree)
@@ -227,8 +244,11 @@ def _map(scene: Scene, one: Over, two: Over, state: State) -> Map:
     beside = state.rest.x
     with progress("mapping", unit="rows") as report:
         for j, part in enumerate(parts):
-            row = load_any(scene, [two.setting(float(part))])
-            rods = Rods(row, one, size, kernel_text)
+            try:
+                rods = Rods(load_any(scene, [two.setting(float(part))]), one, size, kernel_text)
+            except InputError:  # no such rod
+                continue
+            looked = Looked(rods, rods.spectrum, rods.first.system.rate, neutral)
             x = beside
             for i, p in enumerate(parts):
                 try:
@@ -238,7 +258,7 @@ def _map(scene: Scene, one: Over, two: Over, state: State) -> Map:
                     continue
                 x = rest.x
                 beside = x if i == 0 else beside
-                growth[j, i] = standing.spectrum(rest.linear, x)[0][0].real
+                growth[j, i] = looked.at(Place(x, float(p), np.zeros_like(x), 1.0)).growth[0].real
             report((j + 1) / GRID, j + 1)
     return Map((one.key, two.key), np.array([one.at(p) for p in parts]), np.array([two.at(p) for p in parts]), growth)
 

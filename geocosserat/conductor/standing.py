@@ -27,6 +27,7 @@ from geocosserat.model.records import End, RodModel, Scene
 from geocosserat.model.seen import seen
 from geocosserat.solver.consistent import consistent
 from geocosserat.statics.linear import Linear
+from geocosserat.statics.newton import NotAtRest, size
 from geocosserat.statics.pencil import Complex
 from geocosserat.statics.sparse import Sparse
 from geocosserat.statics.system import LARGEST, System
@@ -36,6 +37,9 @@ STRAYS = 1e-2
 
 SAME = 1e-6
 """Difference, relative to the whole, below which two states are one."""
+
+TURNED = 1e-3
+"""Difference of strains, and of bends in radians over the length, below which they are one if they lie alike."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,12 +59,25 @@ class Standing:
     def poses(self, x: Array) -> Poses:
         return self.rod.poses(self.system.state(x))
 
-    def spectrum(self, linear: Linear | Sparse, x: Array) -> tuple[Complex, Complex]:
-        """Growth rates and motions as `Linear.spectrum`, of the rod alone."""
-        if self.held is not None:
-            twist, _, _ = self.kernel.observe(0.0, self.system.state(x))
-            return self.held.spectrum(x, twist.T if self.held.driven else np.zeros_like(twist.T), self.system.rate)
-        growth, motions = linear.spectrum(self.system.rate)
+    def scaled(self, scale: Array) -> "Standing":
+        """The same in other natural sizes (n,)."""
+        system = replace(self.system, scale=scale)
+        held = self.held and replace(self.held, system=replace(self.held.system, scale=scale))
+        return replace(self, system=system, held=held)
+
+    def spectrum(self, linear: Linear | Sparse | None, x: Array) -> tuple[Complex, Complex]:
+        """Growth rates and motions as `Linear.spectrum`, of the rod alone; one that is held needs no `linear`.
+
+        Raises NotAtRest if they cannot be computed.
+        """
+        try:
+            if self.held is not None:
+                twist, _, _ = self.kernel.observe(0.0, self.system.state(x))
+                return self.held.spectrum(x, twist.T if self.held.driven else np.zeros_like(twist.T), self.system.rate)
+            assert linear is not None
+            growth, motions = linear.spectrum(self.system.rate)
+        except np.linalg.LinAlgError as error:
+            raise NotAtRest(f"small motions about the state cannot be computed: {error}") from error
         kept = [i for i in range(len(growth)) if not self._strays(x, motions[:, i])]
         return growth[kept], motions[:, kept]
 
@@ -69,17 +86,24 @@ class Standing:
 
     def same(self, x: Array, y: Array) -> bool:
         """Whether two states of rest are one: in the same place, or one turned into the other without resistance."""
-        length = self.scene.model.length
-        apart = np.linalg.norm(self.poses(x).position - self.poses(y).position, axis=1).max()
-        if apart < SAME * length:
-            return True
+        here, there = self.poses(x), self.poses(y)
+        apart = np.linalg.norm(here.position - there.position, axis=1).max() / self.scene.model.length
+        if max(apart, np.abs(here.rotation - there.rotation).max()) < SAME:
+            return size(self._turn(x) - self._turn(y)) < TURNED
         one, other = self.energy(x), self.energy(y)
         if abs(one - other) > SAME * max(abs(one), abs(other)):
             return False
         growth = [self.spectrum(self.system.linear(z), z)[0] for z in (x, y)]
-        if any(np.abs(g).min() > SAME * self.system.rate for g in growth):
+        if any(np.abs(g).min(initial=np.inf) > SAME * self.system.rate for g in growth):
             return False  # nothing turns without resistance
-        return bool(np.abs(growth[0][:3] - growth[1][:3]).max() < 1e3 * SAME * self.system.rate)
+        few = min(3, *map(len, growth))
+        return bool(np.abs(growth[0][:few] - growth[1][:few]).max() < 1e3 * SAME * self.system.rate)
+
+    def _turn(self, x: Array) -> Array:
+        """The turn in natural sizes: a rod that is twisted by whole turns lies as one that is not."""
+        turn = self.rod.turn(self.system.state(x)).copy()
+        turn[self.rod.structure.group.translations :] *= self.scene.model.length
+        return turn
 
     def displaced(self, x: Array, motion: Complex) -> Complex:
         """(nodes, space) how the nodes move with a motion (n,), complex as it is; per unit of it."""

@@ -52,15 +52,17 @@ class Point:
 
 @dataclass(frozen=True)
 class Critical:
-    """A value at which stability is lost, or won back.
+    """A value at which a growth rate passes zero.
 
-    kind: "divergence" or "flutter". frequency: of flutter, radians per time. fold: the branch turns back there. error:
-    by how much the values of two meshes differ, or None.
+    kind: "divergence" or "flutter". frequency: of flutter, radians per time. gains: the rate becomes positive; lost:
+    and none was before. fold: the branch turns back there. error: by how much the values of two meshes differ, or None
+    if a finer one was not asked for, or has no such crossing.
     """
 
     value: float
     kind: str
     frequency: float
+    gains: bool
     lost: bool
     fold: bool
     error: float | None
@@ -71,6 +73,7 @@ class Critical:
             "value": self.value,
             "kind": self.kind,
             "frequency": self.frequency if self.kind == "flutter" else None,
+            "gains": self.gains,
             "lost": self.lost,
             "fold": self.fold,
             "error": self.error,

@@ -69,7 +69,8 @@ def _print_followed(followed: Followed, console: Console) -> None:
     critical = followed.critical
     if critical is None:
         began = followed.branches[0][0].growth > 0
-        why = "it is not stable to begin with" if began else "small motions decay all along"
+        so_far = "at all states that were looked at" if not followed.reason else "as far as it was followed"
+        why = "it is not stable to begin with" if began else f"small motions decay {so_far}"
         console.print(Text(f"{followed.key} from {first:g} to {last:g}: no loss of stability; {why}"))
     for crossing in followed.crossings:
         console.print(Text(f"{followed.key} = {digits(crossing.value, 12)}: {_said(crossing)}"), soft_wrap=True)
@@ -82,7 +83,7 @@ def _print_followed(followed: Followed, console: Console) -> None:
 
 def _said(crossing: Critical) -> str:
     kind = "fold" if crossing.fold else crossing.kind
-    words = f"{kind} {'begins' if crossing.lost else 'ends'}"
+    words = f"{kind} {'begins' if crossing.gains else 'ends'}"
     if crossing.kind == "flutter":
         words += f", {digits(crossing.frequency, 12)} radians per time"
     return words + ("" if crossing.error is None else f" (the last two meshes differ by {digits(crossing.error, 2)})")

@@ -63,7 +63,8 @@ class System:
         """(n + k,) what is to vanish: f in natural sizes (1 / time), and the gap of a closed rod."""
         y = self.state(x)
         rate = np.empty_like(y)
-        self.kernel.rate(0.0, y, rate)
+        with np.errstate(all="ignore"):  # numbers that are not finite are found later
+            self.kernel.rate(0.0, y, rate)
         gap = np.empty(0) if self.closure is None else self.closure.gap(y)
         return np.concatenate([rate[self.kept] / self.scale, gap])
 
@@ -76,7 +77,8 @@ class System:
     def dense(self, x: Array) -> Linear:
         """The same as matrices, on the motions that leave unit vectors so."""
         y = self.state(x)
-        J = self.kernel.jacobian(0.0, y)[np.ix_(self.kept, self.kept)]
+        with np.errstate(all="ignore"):
+            J = self.kernel.jacobian(0.0, y)[np.ix_(self.kept, self.kept)]
         J = J / self.scale[:, None] * self.scale
         moves = self.kernel.algebraic[self.kept] == 0.0
         basis = np.eye(len(x))
