@@ -144,6 +144,7 @@ def modes_of(coarse: State | None, state: State, count: int = COUNT) -> Modes:
         largest = np.linalg.norm(shape, axis=1).max()
         shapes.append(shape / (largest if largest > 1e-9 * length else 1.0))
     errors = np.full(len(growth), np.inf) if changes is None else changes / np.maximum(np.abs(growth), vanish)
+    errors = np.where(neutral, 0.0, errors)  # what vanishes is known to
     return Modes(
         growth=growth[:count],
         shapes=np.array(shapes),
