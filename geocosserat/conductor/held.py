@@ -18,7 +18,7 @@ from geocosserat.kernel.pure import NumpyRod
 from geocosserat.statics.pencil import Complex, growth
 from geocosserat.statics.system import System
 
-SLACK = 1e-11
+SLACK = 1e-13
 """How much frozen modes yield between two held ends, in natural sizes, so that their stress is unique."""
 
 

@@ -21,6 +21,10 @@ FIRST, LONGEST, SHORTEST = 0.02, 0.08, 1e-7
 
 EXACT, ROUNDS = 1e-9, 8
 
+FAINT = 1e-5
+"""Steps below this that no longer make the residual less are round-off: where a branch leaves the path, the equations
+leave open how far the state lies to that side."""
+
 
 class Family(Protocol):
     """Systems that depend on a number p in [0, 1]."""
@@ -100,7 +104,7 @@ def advance(family: Family, place: Place, length: float) -> tuple[Place, int]:
     Raises NotAtRest if it does not converge there.
     """
     x, p = family.moved(place.x, length * place.along), place.p + length * place.onward
-    row, last = place.along / len(x), np.inf
+    row, last, before = place.along / len(x), np.inf, np.inf
     try:
         slope = family.slope(x, p)
         for rounds in range(1, ROUNDS + 1):
@@ -108,12 +112,12 @@ def advance(family: Family, place: Place, length: float) -> tuple[Place, int]:
             residual = family.residual(x, p)
             step, more = family.linear(x, p).bordered(slope, row, place.onward, residual, short)
             x, p = family.moved(x, step), p + more
-            now = max(size(step), abs(more))
-            if now < EXACT:
+            now, left = max(size(step), abs(more)), size(residual)
+            if now < EXACT or (now < FAINT and left > 0.5 * before):
                 return _directed(family, x, p, slope, place.along, place.onward), rounds
             if not now < max(0.5 * last, 1e-3):
                 break
-            last = now
+            last, before = now, left
     except np.linalg.LinAlgError as error:
         raise NotAtRest(str(error)) from error
     raise NotAtRest("Newton's method does not converge across the path")
