@@ -29,8 +29,6 @@ VALUES = all_values()
 QUICK = {"column_dead", "follower_tip_limit", "odd"}
 # from the start that its scene has, Newton's method leads to a state beside the one that lost its stability
 LEFT = {"ring_held"}
-# their paths take minutes: growth rates before and after the loss are compared all the same
-LARGE = {"ring", "ring_limit", "ring_held"}
 
 
 def cases(quick: set[str]) -> list[Any]:
@@ -60,7 +58,7 @@ def test_growth_rates_are_those_of_the_determinant(entry: Value, examples: Path)
         assert found.neutral == entry.zeros
 
 
-@pytest.mark.parametrize("entry", [case for case in cases(QUICK) if case.id not in LARGE])
+@pytest.mark.parametrize("entry", cases(QUICK))
 def test_the_loss_of_stability_is_where_the_determinant_has_it(entry: Value, examples: Path) -> None:
     """Value and frequency to eight digits, its kind, and an error that is told and true."""
     low, high = entry.interval

@@ -8,12 +8,7 @@ from numpy.typing import NDArray
 from geocosserat.algebra.exponential import log
 from geocosserat.discretisation.mesh import Array
 from geocosserat.discretisation.motions import strain_rates
-from geocosserat.discretisation.pose import Poses
 from geocosserat.discretisation.semidiscrete import SemiDiscrete
-
-STEP = 1e-6
-"""Of a strain, or of a bend over the length: to see how the gap changes."""
-
 
 @dataclass(frozen=True, eq=False)
 class Closed:
@@ -23,21 +18,23 @@ class Closed:
 
     def gap(self, y: Array) -> Array:
         """(d,) the pose of the last node seen from the first."""
-        found: Array = self._gaps(y[None])[0]
+        poses = self.rod.poses(y)
+        length, group = float(self.rod.mesh.edges[-1]), self.rod.structure.group
+        first, last = (group.pose(poses.position[i] / length, poses.rotation[i]) for i in (0, -1))
+        found: Array = log(group, group.inverse(first) @ last)
         return found
 
     def slope(self, y: Array, kept: NDArray[np.intp]) -> Array:
-        """(d, n) how it changes with entries of the state."""
-        length, group = float(self.rod.mesh.edges[-1]), self.rod.structure.group
-        points = self.rod.mesh.elements * self.rod.mesh.degree
-        rows = np.array([STEP] * group.translations + [STEP / length] * group.rotations)
-        h = np.full(len(y), STEP)
-        h[: len(rows) * points] = np.repeat(rows, points)
-        h = h[kept]
-        moved = np.zeros((len(kept), len(y)))
-        moved[np.arange(len(kept)), kept] = h
-        change: Array = (self._gaps(y + moved) - self._gaps(y - moved)) / (2 * h[:, None])
-        return change.T
+        """(d, n) how it changes with entries of the state, for a rod that is as good as closed: the twist of the last
+        node while the first one stays, as the scheme has it."""
+        structure, mesh = self.rod.structure, self.rod.mesh
+        d, points = structure.group.dimension, mesh.elements * mesh.degree
+        A = strain_rates(mesh, structure.group, self.rod.turn(y))
+        found = np.zeros((d, len(y)))
+        found[:, : d * points] = np.linalg.solve(A[:, d:].T, np.eye(d * points)[:, -d:]).T
+        found[: structure.group.translations] /= float(mesh.edges[-1])
+        found[:, : d * points][:, np.repeat(structure.frozen, points)] = 0.0  # these entries are stresses
+        return found[:, kept]
 
     def lost(self, y: Array, kept: NDArray[np.intp]) -> Array:
         """(n, d) the stresses that are balanced all round a closed rod: no motion of it changes the turn by them."""
@@ -49,10 +46,3 @@ class Closed:
         found = np.zeros((len(y), d))
         found[: len(A)] = left[:, -d:]
         return found[kept]
-
-    def _gaps(self, states: Array) -> Array:
-        poses: Poses = self.rod.poses(states)
-        length, group = float(self.rod.mesh.edges[-1]), self.rod.structure.group
-        first, last = (group.pose(poses.position[:, i] / length, poses.rotation[:, i]) for i in (0, -1))
-        found: Array = log(group, group.inverse(first) @ last)
-        return found

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.optimize import toms748
 
 from geocosserat.kernel.contract import Array
-from geocosserat.statics.path import Family, Place, advance, begin, follow
+from geocosserat.statics.path import Family, Place, advance, begin, distance, follow
 from geocosserat.statics.pencil import Complex
 
 EXACT = 1e-13
@@ -98,8 +98,7 @@ class Looked:
 
     def _between(self, one: Spot, other: Spot, number: int) -> Crossing:
         """The crossing of the rate of that number, bracketed along the path."""
-        length = float(one.place.along @ (other.place.x - one.place.x) / len(one.place.x))
-        length += one.place.onward * (other.place.p - one.place.p)
+        length = distance(one.place, other.place)
         reached: dict[float, Spot] = {0.0: one, length: other}
 
         def rate(part: float) -> float:

@@ -21,6 +21,10 @@ FIRST, LONGEST, SHORTEST = 0.02, 0.08, 1e-7
 
 EXACT, ROUNDS = 1e-9, 8
 
+STEEP = 0.9
+"""Of the direction of a path, the part in p from which on its states are told apart by p, which is then a given number
+for which one rod is looked at."""
+
 FAINT = 1e-5
 """Steps below this that no longer make the residual less are round-off: where a branch leaves the path, the equations
 leave open how far the state lies to that side."""
@@ -72,7 +76,7 @@ class Eased:
 
 def begin(family: Family, x: Array, p: float, sign: float) -> Place:
     """The place of a state of rest, from which p grows (sign 1) or falls (-1)."""
-    return _directed(family, x, p, family.slope(x, p), np.zeros_like(x), sign)
+    return _directed(family.linear(x, p), x, p, family.slope(x, p), np.zeros_like(x), sign)
 
 
 def follow(family: Family, place: Place, low: float = 0.0, high: float = 1.0, most: int = 1000) -> Iterator[Place]:
@@ -104,17 +108,19 @@ def advance(family: Family, place: Place, length: float) -> tuple[Place, int]:
     Raises NotAtRest if it does not converge there.
     """
     x, p = family.moved(place.x, length * place.along), place.p + length * place.onward
-    row, last, before = place.along / len(x), np.inf, np.inf
+    row, corner = _across(place)
+    last, before = np.inf, np.inf
     try:
         slope = family.slope(x, p)
         for rounds in range(1, ROUNDS + 1):
-            short = length - float(row @ (x - place.x)) - place.onward * (p - place.p)
-            residual = family.residual(x, p)
-            step, more = family.linear(x, p).bordered(slope, row, place.onward, residual, short)
+            short = length - float(row @ (x - place.x)) - corner * (p - place.p)
+            residual, linear = family.residual(x, p), family.linear(x, p)
+            step, more = linear.bordered(slope, row, corner, residual, short)
+            more = 0.0 if _steep(place) else more  # not a change in the last digit, for which all is read again
             x, p = family.moved(x, step), p + more
             now, left = max(size(step), abs(more)), size(residual)
             if now < EXACT or (now < FAINT and left > 0.5 * before):
-                return _directed(family, x, p, slope, place.along, place.onward), rounds
+                return _directed(linear, x, p, slope, place.along, place.onward), rounds
             if not now < max(0.5 * last, 1e-3):
                 break
             last, before = now, left
@@ -123,22 +129,40 @@ def advance(family: Family, place: Place, length: float) -> tuple[Place, int]:
     raise NotAtRest("Newton's method does not converge across the path")
 
 
+def distance(one: Place, other: Place) -> float:
+    """How much further another place is, as `advance` counts it."""
+    row, corner = _across(one)
+    return float(row @ (other.x - one.x)) + corner * (other.p - one.p)
+
+
+def _steep(place: Place) -> bool:
+    return abs(place.onward) > STEEP
+
+
+def _across(place: Place) -> tuple[Array, float]:
+    """(row, corner) of the plane on which the next state is looked for: where row x + corner p is given."""
+    if _steep(place):
+        return np.zeros_like(place.x), 1.0 / place.onward
+    return place.along / len(place.x), place.onward
+
+
 def _landed(family: Family, one: Place, other: Place, p: float) -> Place:
     """The place at p between two places."""
     part = (p - one.p) / (other.p - one.p)
     x = family.moved(one.x, part * (other.x - one.x))
     for _ in range(ROUNDS):
-        step = family.linear(x, p).step(family.residual(x, p))
+        linear = family.linear(x, p)
+        step = linear.step(family.residual(x, p))
         x = family.moved(x, step)
         if size(step) < EXACT:
-            return _directed(family, x, p, family.slope(x, p), one.along, one.onward)
+            return _directed(linear, x, p, family.slope(x, p), one.along, one.onward)
     raise NotAtRest("Newton's method does not converge at the end of the interval")
 
 
-def _directed(family: Family, x: Array, p: float, slope: Array, along: Array, onward: float) -> Place:
-    """The place with its direction, on the side of the one that led there. slope: how the residual changes with p,
-    there or nearby: the direction only says where to look next."""
+def _directed(linear: Linear | Sparse, x: Array, p: float, slope: Array, along: Array, onward: float) -> Place:
+    """The place with its direction, on the side of the one that led there. linear, and slope, how the residual changes
+    with p: there or nearby, for the direction only says where to look next."""
     row = along / len(x)
-    d, e = family.linear(x, p).bordered(slope, row, onward, np.zeros_like(slope), 1.0)
+    d, e = linear.bordered(slope, row, onward, np.zeros_like(slope), 1.0)
     length = float(np.sqrt(d @ d / len(x) + e * e))
     return Place(x, p, d / length, e / length)
