@@ -53,7 +53,7 @@ def friction_of(model: RodModel, mesh: Mesh, left: float) -> Array:
     friction = np.empty((*u.shape, d, d))
     for i in range(d):
         for j in range(d):
-            friction[..., i, j] = along(model.friction[i][j], model.parameters, u)
+            friction[..., i, j] = evaluate(model.friction[i][j], {**model.parameters, "u": u})
     weighted = friction * mesh.reference.masses[:, None, None]
     mean = mesh.gather(weighted) / mesh.mass[:, None, None]
     for i in frictionless(model):

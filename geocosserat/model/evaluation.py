@@ -42,6 +42,8 @@ def symbols(e: Expression) -> frozenset[str]:
 
 def constant(e: Expression) -> float | None:
     """The value of ``e`` if no name occurs in it, else None; infinite or NaN for ``1/0`` and the like."""
+    if isinstance(e, Number):
+        return float(e.value)
     return None if symbols(e) else float(evaluate(e, {}))
 
 
@@ -65,6 +67,8 @@ def evaluate(e: Expression, env: Mapping[str, float | NDArray[np.float64]]) -> V
     largest number it is infinite; nothing is raised or warned, the caller checks. ``heaviside(0)`` is 1/2.
     Raises ExpressionError if a name has no value.
     """
+    if isinstance(e, Number):  # most of what a scene says
+        return float(e.value)
     with np.errstate(all="ignore"):
         value = _value(e, env)
     return value if isinstance(value, np.ndarray) and value.ndim else float(value)
