@@ -29,7 +29,7 @@ STAGES = {
     "bounded": (),  # work in a process of its own
     "passivity": ("algebra", "model", "derivation.convert", "derivation.notation", "referee.decide"),  # judges laws
 }
-BASE = ("version", "shipped")  # free to all; import nothing of the package
+BASE = ("version", "shipped", "locks")  # free to all; import nothing of the package
 SEE_ALL = ("", "__main__", "cli", "conductor")  # "" is geocosserat/__init__.py
 
 EVERYWHERE = ("",)
