@@ -23,7 +23,7 @@ STAGES = {
     "kernel": ("algebra", "model", "discretisation"),  # kernels are text by now: no sympy, no templates
     "solver": ("kernel.contract", "kernel.compile"),  # integrates anything that keeps the contract; knows no rods
     "statics": ("kernel.contract",),  # where any such system rests; knows no rods
-    "results": ("algebra.groups", "model.errors", "kernel.contract", "solver.trajectory"),
+    "results": ("bounded", "algebra.groups", "model.errors", "kernel.contract", "solver.trajectory"),
     "planning": ("algebra.groups", "discretisation.mesh", "model"),  # which setting, for which accuracy
     "referee": ("algebra",),  # judges statements about rods; knows no paper
     "bounded": (),  # work in a process of its own
