@@ -17,7 +17,7 @@ def main() -> None:
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # else somebody wants it ignored
         signal.signal(signal.SIGINT, interrupt)
     try:
-        from geocosserat.cli import main as program
+        from geocosserat.cli import program
 
         program()
     except (Exception, KeyboardInterrupt, SystemExit) as end:

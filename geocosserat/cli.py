@@ -8,6 +8,7 @@ import math
 import os
 import sys
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from functools import wraps
 from pathlib import Path
 from typing import Any, TypeVar
@@ -51,15 +52,40 @@ def _one_message(command: Callable[..., None]) -> Callable[..., None]:
         try:
             command(*args, **options)
         except (InputError, FileError, CompileError) as error:
-            click.echo(f"geocosserat: {error}", err=True)
+            _complain(error)
             sys.exit(WRONG_INPUT)
         except KeyboardInterrupt:
             click.echo("geocosserat: interrupted", err=True)
             sys.exit(NOT_REACHED)
         except BrokenPipeError:  # the reader of our output left
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            _say_no_more()
 
     return guarded
+
+
+def program() -> None:
+    """The command line, where it goes wrong as well: what it prints may go to a full disk."""
+    try:
+        main()
+    except OSError as error:
+        _complain(f"expected files and output that can be written, found {error.strerror or error}; make room for them")
+        _say_no_more()
+        sys.exit(WRONG_INPUT)
+    except MemoryError:
+        _complain("not reached: there is too little memory")
+        sys.exit(NOT_REACHED)
+
+
+def _complain(error: object) -> None:
+    """In one line, whatever is in the names of files."""
+    line = "".join(c if c.isprintable() else repr(c)[1:-1] for c in str(error))
+    click.echo(f"geocosserat: {line}", err=True)
+
+
+def _say_no_more() -> None:
+    """Whatever is still to be written to standard output would fail once more at the end of the program."""
+    with suppress(OSError, ValueError, AttributeError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _print_json(fields: Mapping[str, Any]) -> None:
@@ -226,7 +252,7 @@ def derive(
     scene: str, form: str, chart: str | None, latex: bool, settings: tuple[str, ...], as_json: bool
 ) -> None:
     """Print the equations that SCENE will solve."""
-    encoding = sys.stdout.encoding or "ascii"
+    encoding = getattr(sys.stdout, "encoding", None) or "ascii"  # None: closed
     unicode = as_json or "utf" in encoding.lower()
     equations = derive_equations(scene, form, chart=chart, settings=settings, unicode=unicode)
     if as_json:

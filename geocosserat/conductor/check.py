@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from geocosserat.bounded import OutOfBounds, bounded
-from geocosserat.conductor.folder import claim, give_back
+from geocosserat.conductor.folder import claimed
 from geocosserat.conductor.scene import MOST_SECONDS
 from geocosserat.model.errors import InputError
 from geocosserat.model.law import Law, load_law
@@ -62,20 +62,21 @@ def check(
             known = ", ".join((*read.parameters, *read.open)) or "none"
             raise InputError(f"a parameter of the law ({known})", repr(name), "choose one of these", key="--set")
     folder = None if out is None else Path(out)
-    if folder is not None:
-        claim(folder, overwrite, CHECK_FILES)
     try:
-        found, fields, content = bounded(partial(_answered, read, folder is not None), seconds)
+        with claimed(folder, overwrite, CHECK_FILES):
+            found, fields, content = bounded(partial(_answered, read, folder is not None), seconds)
+            files = () if folder is None else _written(content, folder)
     except OutOfBounds as error:
-        if folder is not None:
-            give_back(folder)
         why = {"verdict": "undecided", "grade": None, "conditions": [], "not_checked": [f"all: {error}"]}
         return Checked(None, (), {"law": read.path or read.name, "name": read.name, **why, "files": []})
-    files = () if folder is None else tuple(write_bytes(folder / name, data) for name, data in content.items())
-    if folder is not None:
-        for name in set(CHECK_FILES) - set(content):  # of an earlier check, which are no more true
-            (folder / name).unlink(missing_ok=True)
     return Checked(found, files, {**fields, "files": [str(file) for file in files]})
+
+
+def _written(content: Mapping[str, bytes], folder: Path) -> tuple[Path, ...]:
+    files = tuple(write_bytes(folder / name, data) for name, data in content.items())
+    for name in set(CHECK_FILES) - set(content):  # of an earlier check, which are no more true
+        (folder / name).unlink(missing_ok=True)
+    return files
 
 
 def _answered(law: Law, written: bool) -> "tuple[Check, dict[str, Any], dict[str, bytes]]":

@@ -13,13 +13,13 @@ from typing import Any
 
 import numpy as np
 
-from geocosserat.conductor.folder import claim, give_back
+from geocosserat.conductor.folder import claimed
 from geocosserat.conductor.kernels import choose_backend, kernel_text, on_backend
 from geocosserat.conductor.scene import SceneLike, load_any
 from geocosserat.conductor.search import planned
 from geocosserat.conductor.simulate import Attempt, Clock, Simulator
 from geocosserat.discretisation.mesh import Array, Mesh
-from geocosserat.kernel.compile import CompileError, compiler
+from geocosserat.kernel.compile import compiler
 from geocosserat.model.errors import InputError
 from geocosserat.model.records import Scene
 from geocosserat.planning.gap import position_gap
@@ -91,16 +91,10 @@ def cost(
     read = _unset(load_any(scene, settings))
     backend = choose_backend(read.run.backend)
     folder = None if out is None else Path(out)
-    if folder is not None:
-        claim(folder, overwrite, COST_FILES)
-    try:
+    with claimed(folder, overwrite, COST_FILES):
         chosen = tuple(dict.fromkeys(methods))
         diagram = on_backend(read.run.backend, backend, lambda used: _Measured(read, used, chosen, seconds).diagram())
-    except (InputError, CompileError, KeyboardInterrupt):
-        if folder is not None:
-            give_back(folder)
-        raise
-    return Cost(diagram, () if folder is None else _write(diagram, folder))
+        return Cost(diagram, () if folder is None else _write(diagram, folder))
 
 
 def _unset(scene: Scene) -> Scene:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from geocosserat.conductor.folder import claim
+from geocosserat.conductor.folder import claimed
 from geocosserat.conductor.scene import SceneLike, load_any
 from geocosserat.conductor.simulate import chosen_setting
 from geocosserat.discretisation.semidiscrete import discretise
@@ -114,7 +114,7 @@ def generate(
     rod = discretise(read, chosen.elements, chosen.degree)
     files = take_away(generate_source(rod.structure, read.title), rod, read.run.until, read.title, backend)
     folder = Path(out)
-    claim(folder, overwrite, tuple(files))
-    for name, content in files.items():
-        write_bytes(folder / name, content.encode())
+    with claimed(folder, overwrite, tuple(files)):
+        for name, content in files.items():
+            write_bytes(folder / name, content.encode())
     return Generated(backend, tuple(folder / name for name in files), json.loads(files["signature.json"]))

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from geocosserat.conductor.folder import claim, give_back
+from geocosserat.conductor.folder import claimed
 from geocosserat.conductor.kernels import kernel_text
 from geocosserat.conductor.report import rest_of
 from geocosserat.conductor.resting import Stander, State
@@ -93,22 +93,17 @@ def equilibrium(
     read = load_any(scene, changes)
     check_standing(read)
     folder = None if out is None else Path(out)
-    if folder is not None:
-        claim(folder, overwrite, FILES)
     clock = Clock()
-    try:
-        stander, wanted = Stander(read, kernel_text, clock), read.run.accuracy or DEFAULT_ACCURACY
-        coarse, state = at_rest(stander, wanted)
-        found = _told(coarse, state, clock)
-        if every:
-            found = replace(found, solutions=(found, *_others(stander, wanted, state)))
-    except BaseException as error:
-        if folder is not None:
-            give_back(folder)
-        if isinstance(error, NotAtRest):
+    with claimed(folder, overwrite, FILES):
+        try:
+            stander, wanted = Stander(read, kernel_text, clock), read.run.accuracy or DEFAULT_ACCURACY
+            coarse, state = at_rest(stander, wanted)
+            found = _told(coarse, state, clock)
+            if every:
+                found = replace(found, solutions=(found, *_others(stander, wanted, state)))
+        except NotAtRest as error:
             raise NotReached(str(error)) from error
-        raise
-    return found if folder is None else _written(found, folder)
+        return found if folder is None else _written(found, folder)
 
 
 def at_rest(

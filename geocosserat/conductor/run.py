@@ -13,18 +13,18 @@ from pathlib import Path
 from typing import Any
 
 from geocosserat.bounded import OutOfBounds, bounded
-from geocosserat.conductor.folder import claim, give_back
+from geocosserat.conductor.folder import claimed
 from geocosserat.conductor.kernels import choose_backend, kernel_text, on_backend, tell
 from geocosserat.conductor.report import solution_of
 from geocosserat.conductor.scene import MOST_SECONDS, SceneLike, laws_of, load_any
 from geocosserat.conductor.search import search
 from geocosserat.conductor.simulate import Clock, Simulator
-from geocosserat.kernel.compile import CompileError
 from geocosserat.model.errors import InputError
 from geocosserat.model.law import Law
 from geocosserat.model.records import Scene
 from geocosserat.results.checkpoint import NAME as CHECKPOINT
-from geocosserat.results.checkpoint import Keeper
+from geocosserat.results.checkpoint import Keeper, load_checkpoint
+from geocosserat.results.errors import FileError
 from geocosserat.results.netcdf import save
 from geocosserat.results.solution import Solution
 from geocosserat.results.summary import summary, write_summary
@@ -71,28 +71,31 @@ def run(
     if resume and folder is None:
         raise InputError("the folder of the interrupted run", "none", "name it with --out", key="--resume")
     backend = choose_backend(read.run.backend)
-    keeper = Keeper(folder, _key(read, backend), resume)
-    if folder is not None:
-        claim(folder, overwrite or resume, (SOLUTION, PICTURE, SUMMARY, CHECKPOINT))
-    clock = Clock()
+    if folder is not None and resume and backend == "c" and read.run.backend == "auto":  # it may not have compiled then
+        backend = "numpy" if load_checkpoint(folder).key == _key(read, "numpy") else "c"
+    with claimed(folder, overwrite or resume, (SOLUTION, PICTURE, SUMMARY, CHECKPOINT)):
+        return on_backend(read.run.backend, backend, lambda used: _run(read, used, folder, resume))
+
+
+def _run(scene: Scene, backend: str, folder: Path | None, resume: bool) -> Run:
+    """The run of a scene on a backend, with its files."""
+    clock, keeper = Clock(), Keeper(folder, _key(scene, backend), resume, tell)
     try:
-        found = on_backend(
-            read.run.backend, backend, lambda used: search(Simulator(read, used, kernel_text, clock), keeper)
-        )
-    except (CompileError, InputError):
-        if folder is not None:
-            give_back(folder)
-        raise
+        found = search(Simulator(scene, backend, kernel_text, clock), keeper)
     except KeyboardInterrupt:
         keeper.save()
         raise
-    solution = solution_of(read, found, clock)
-    for law in laws_of(read):
+    solution = solution_of(scene, found, clock)
+    for law in laws_of(scene):
         solution = replace(solution, contents={**solution.contents, "law": _said_of(law)})
     files = [] if folder is None else [folder / SOLUTION, folder / PICTURE, folder / SUMMARY]
-    fields = summary(solution, files, scene=read.path)
+    fields = summary(solution, files, scene=scene.path)
     if folder is not None:
-        _write(solution, files, fields)
+        try:
+            _write(solution, files, fields)
+        except (FileError, KeyboardInterrupt):
+            keeper.save()
+            raise
         keeper.finish()
     return Run(solution, fields)
 
@@ -119,6 +122,9 @@ def _key(scene: Scene, backend: str) -> str:
 
 def _write(solution: Solution, files: Sequence[Path], fields: Mapping[str, Any]) -> None:
     save(solution, files[0])
+    for file in files[1:]:  # of an earlier run, if it is overwritten: they would belong to another solution
+        with suppress(OSError):
+            file.unlink()
     write_summary(fields, files[2])
     from geocosserat.results.picture import picture  # last: whatever happens to it, the results are there
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -64,8 +65,7 @@ def search(simulate: Simulator, keeper: Keeper) -> Found:
     scene, seconds = simulate.scene, simulate.clock.seconds
     chosen = chosen_setting(scene)
     if chosen is not None:
-        frames = scene.run.frames
-        attempt = simulate(chosen, frames, lambda start: keeper.begin(0, start, frames), keeper.frame)
+        attempt = simulate(chosen, scene.run.frames, partial(keeper.begin, 0), keeper.keep)
         seconds["solve"] = attempt.seconds
         return Found(attempt, None, attempt.trajectory.reached, attempt.trajectory.reason, ())
     found = planned(simulate, keeper, scene.run.accuracy or DEFAULT_ACCURACY)
@@ -142,8 +142,7 @@ class _Search:
     def _simulated(self, number: int, setting: Setting, whole: bool) -> Attempt:
         if not whole:
             return self.simulate(setting, 2)
-        frames, keeper = self.scene.run.frames, self.keeper
-        return self.simulate(setting, frames, lambda start: keeper.begin(number, start, frames), keeper.frame)
+        return self.simulate(setting, self.scene.run.frames, partial(self.keeper.begin, number), self.keeper.keep)
 
     def _setting(self, level: Level) -> Setting:
         method = self._method(level.size)

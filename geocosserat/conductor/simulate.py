@@ -5,6 +5,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -22,6 +23,7 @@ from geocosserat.planning.resolution import instants
 from geocosserat.planning.settings import DEFAULT_ACCURACY, Setting
 from geocosserat.results.progress import progress
 from geocosserat.solver.integrate import integrate
+from geocosserat.solver.legs import in_legs
 from geocosserat.solver.trajectory import Frame, Progress, Trajectory
 
 MOST_NUMBERS = 2**28
@@ -55,6 +57,11 @@ class Attempt:
     seconds: float
 
 
+def at_start(start: Array, times: Array) -> Trajectory:
+    """Of a run that has not begun."""
+    return Trajectory(times[:1].copy(), start[None].copy(), 0, 0, 0, False)
+
+
 class _OutOfTime(Exception):
     """An integration took longer than it may."""
 
@@ -80,32 +87,29 @@ class Simulator:
         self,
         setting: Setting,
         frames: int,
-        begin: Callable[[Array], Array] = lambda start: start[None],
-        frame: Frame = lambda *_: None,
+        begin: Callable[[Array, Array], Trajectory] = at_start,
+        kept: Callable[[Trajectory], None] = lambda _: None,
     ) -> Attempt:
-        """A simulation that keeps so many states. begin: of the start (size,) the states (frames, size) that are there
-        already; frame: is told of each that comes."""
+        """A simulation that keeps so many states. begin: of the start (size,) and the times (frames,) what is there
+        already; kept: is told of what one may go on from."""
         scene = self.scene
         rod, kernel, text = self._on(setting.elements, setting.degree)
         times = np.linspace(0.0, scene.run.until, frames)
         _check_room(frames, len(rod.state))
         atol = tolerances(rod, setting.rtol, scene.run.atol, unit_of_energy(scene, rod, kernel))
-        done = begin(rod.state)
+        done = begin(rod.state, times)
         start = time.perf_counter()
         with progress(scene.title) as report:
-            if len(done) == len(times):  # it was complete when another one was interrupted
-                trajectory = Trajectory(times, done, 0, 0, 0, True)
-            else:
-                to_come, told = times[len(done) - 1 :], _no_longer(self.seconds, report)
-                try:
-                    rest = integrate(
-                        kernel, done[-1], to_come, setting.method, setting.rtol, atol, told, frame, self.instants
-                    )
-                except _OutOfTime:
-                    why = f"cut off after {self.seconds:.3g} seconds"
-                    rest = Trajectory(to_come[:1], done[-1:], 0, 0, 0, False, why)
-                states = np.concatenate([done[:-1], rest.states])
-                trajectory = replace(rest, times=times[: len(states)], states=states)
+            told = _no_longer(self.seconds, report)
+
+            def leg(before: Trajectory, to_come: Array, frame: Frame) -> Trajectory:
+                part, start = partial(_of_the_rest, told, before, scene.run.until), before.states[-1]
+                return integrate(kernel, start, to_come, setting.method, setting.rtol, atol, part, frame, self.instants)
+
+            try:
+                trajectory = in_legs(leg, done, times, kept)
+            except _OutOfTime:
+                trajectory = replace(done, reason=f"cut off after {self.seconds:.3g} seconds")
         return Attempt(setting, rod, kernel, trajectory, text, time.perf_counter() - start)
 
     def _on(self, elements: int, degree: int) -> tuple[SemiDiscrete, NativeRod | NumpyRod, KernelText]:
@@ -118,6 +122,12 @@ class Simulator:
             with self.clock("compile"):
                 self._last = size, rod, load(text, rod, self.backend), text
         return self._last[1:]
+
+
+def _of_the_rest(progress: Progress, before: Trajectory, until: float, fraction: float, steps: int) -> None:
+    """Progress of what is left as progress of the whole."""
+    done = float(before.times[-1]) / until
+    progress(done + (1.0 - done) * fraction, before.steps + steps)
 
 
 def _no_longer(seconds: float, report: Progress) -> Progress:

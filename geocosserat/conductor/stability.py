@@ -14,7 +14,7 @@ import numpy as np
 
 from geocosserat.conductor.equilibrium import NotReached, at_rest, modes_of
 from geocosserat.conductor.family import Over, Rods, read_over
-from geocosserat.conductor.folder import claim, give_back
+from geocosserat.conductor.folder import claimed
 from geocosserat.conductor.kernels import kernel_text
 from geocosserat.conductor.report import rest_of
 from geocosserat.conductor.resting import Stander, State
@@ -94,19 +94,14 @@ def stability(
         check_standing(load_any(read, [key.setting(1.0)]))
     check_standing(read)
     folder = None if out is None else Path(out)
-    if folder is not None:
-        claim(folder, overwrite, FILES)
-    try:
-        record = _found(read, keys, count)
-    except BaseException as error:
-        if folder is not None:
-            give_back(folder)
-        if isinstance(error, NotAtRest):
+    with claimed(folder, overwrite, FILES):
+        try:
+            record = _found(read, keys, count)
+        except NotAtRest as error:
             raise NotReached(str(error)) from error
-        raise
-    if folder is not None:
-        record = replace(record, files=[str(folder / name) for name in FILES])
-        _write(record, folder)
+        if folder is not None:
+            record = replace(record, files=[str(folder / name) for name in FILES])
+            _write(record, folder)
     return Found(record, record.fields)
 
 

@@ -8,11 +8,12 @@ import shutil
 import subprocess
 import tempfile
 from collections.abc import Callable
+from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
 from typing import TypeVar
 
-from geocosserat.kernel.places import cache_folder
+from geocosserat.kernel.places import PART, cache_folder, making, own_bytes
 
 FLAGS = ("-std=c99", "-O3", "-march=native", "-fno-math-errno", "-ffp-contract=fast", "-fPIC", "-shared")
 """Strict floating point but for products that are added in one rounding: no -ffast-math. Without errno, sqrt and the
@@ -49,12 +50,12 @@ def _machine() -> str:
 
 
 def _words() -> list[str]:
-    """What $CC says after the name of the compiler, as in CC="gcc -m64"."""
+    """What $CC says after the name of the compiler, as in CC="gcc -fsanitize=address"."""
     return shlex.split(os.environ.get("CC", ""))[1:]
 
 
-def library_path(source: str, degree: int, tool: str) -> Path:
-    """Where the compiled kernel of this degree is, or will be."""
+def _key(source: str, degree: int, tool: str) -> str:
+    """A hash of everything that shapes the compiled kernel of this degree."""
     status = os.stat(tool)
     parts = (
         source,
@@ -66,13 +67,29 @@ def library_path(source: str, degree: int, tool: str) -> Path:
         str(status.st_mtime_ns),
         _machine(),
     )
-    return cache_folder() / f"{hashlib.sha256(chr(0).join(parts).encode()).hexdigest()}.so"
+    return hashlib.sha256(chr(0).join(parts).encode()).hexdigest()
+
+
+def _name(key: str, content: bytes) -> str:
+    """The name of a library says what shaped it and what is in it: one that was damaged goes by a false name."""
+    return f"{key}.{hashlib.sha256(content).hexdigest()}.so"
+
+
+def _found(folder: Path, key: str) -> Path | None:
+    """The library of that key in the cache, as it was when it was made by this user. Others are removed."""
+    for path in sorted(folder.glob(f"{key}.*.so")):
+        with suppress(OSError):
+            if path.name == _name(key, own_bytes(path)):
+                return path
+        with suppress(OSError):
+            path.unlink()
+    return None
 
 
 def compile_c(source: str, degree: int = 0) -> Path:
     """The shared library of a kernel at a degree, or of other C (which has none), compiled now if it never was.
 
-    Two processes may compile the same kernel at once: each writes its own file, the last one stays, both are equal.
+    Two processes may compile the same kernel at once: each writes its own file, and the last one stays.
 
     Raises CompileError when there is no compiler or it fails.
     """
@@ -80,10 +97,11 @@ def compile_c(source: str, degree: int = 0) -> Path:
     if tool is None:
         raise CompileError("expected a C compiler, found none on the path; install one, or use the numpy backend")
     try:
-        target = library_path(source, degree, tool)
-        if target.exists():
-            return target
-        with tempfile.TemporaryDirectory(dir=target.parent, prefix=".compile-") as folder:
+        cache, key = cache_folder(), _key(source, degree, tool)
+        found = _found(cache, key)
+        if found is not None:
+            return found
+        with making(cache), tempfile.TemporaryDirectory(dir=cache, prefix=PART) as folder:
             code, built = Path(folder) / "rod.c", Path(folder) / "rod.so"
             code.write_text(source)
             command = [tool, *_words(), *FLAGS, f"-DDEGREE={degree}", str(code), "-o", str(built), "-lm"]
@@ -91,6 +109,8 @@ def compile_c(source: str, degree: int = 0) -> Path:
             if done.returncode:
                 said = " ".join(done.stderr.split())[:1000] or f"exit code {done.returncode}"
                 raise CompileError(f"{tool} failed on a generated kernel: {said}")
+            built.chmod(0o700)  # whatever the umask
+            target = cache / _name(key, built.read_bytes())
             os.replace(built, target)
     except subprocess.TimeoutExpired:
         raise CompileError(f"{tool} did not compile a generated kernel within {PATIENCE} s") from None
@@ -100,7 +120,7 @@ def compile_c(source: str, degree: int = 0) -> Path:
 
 
 def opened(open_library: Callable[[Path], T], source: str, degree: int = 0) -> T:
-    """What `open_library` makes of the compiled library. One that was cut off when the machine went down is made again.
+    """What `open_library` makes of the compiled library. One that cannot be opened is made again, once.
 
     Raises CompileError where there is no compiler, or libraries cannot be loaded.
     """

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
-from geocosserat.kernel.places import cache_folder, write_whole
+from geocosserat.kernel.places import cache_folder, making, own_bytes, write_whole
 from geocosserat.shipped import shipped
 
 
@@ -45,12 +45,12 @@ def find(identity: str) -> KernelText | None:
         texts = [(folder / f"{stem}{suffix}").read_text() for suffix in (".c", ".py", ".json")]
         return KernelText(identity, texts[0], texts[1], json.loads(texts[2]), "shipped")
     try:
-        record = json.loads((cache_folder() / f"{identity}.json").read_text())
+        record = json.loads(own_bytes(cache_folder() / f"{identity}.json"))
         c, numpy, signature = record["c"], record["numpy"], record["signature"]
         if record["digest"] != _digest(identity, c, numpy, signature):
             return None
         return KernelText(identity, c, numpy, signature, "cache")
-    except (OSError, ValueError, KeyError, TypeError):
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return None
 
 
@@ -58,5 +58,7 @@ def store(identity: str, c: str, numpy: str, signature: dict[str, Any]) -> Kerne
     """Keeps a newly generated kernel in the user's cache; a cache that cannot be written is not an error."""
     record = {"c": c, "numpy": numpy, "signature": signature, "digest": _digest(identity, c, numpy, signature)}
     with suppress(OSError):
-        write_whole(cache_folder() / f"{identity}.json", json.dumps(record).encode())
+        folder = cache_folder()
+        with making(folder):
+            write_whole(folder / f"{identity}.json", json.dumps(record).encode())
     return KernelText(identity, c, numpy, signature, "generated")

@@ -8,6 +8,9 @@ from pathlib import Path
 
 from geocosserat.results.errors import FileError
 
+PART = r"\.[0-9a-f]{12}\.part"
+"""Names of files that are being written, or were when their program was ended."""
+
 
 def write_bytes(path: str | os.PathLike[str], data: bytes) -> Path:
     """Write `data` to `path` so that a reader sees the old file or the whole new one, also after a power cut.

@@ -11,11 +11,13 @@ import json
 import os
 from collections.abc import Mapping
 from dataclasses import fields
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import h5netcdf
 
+from geocosserat.bounded import MEMORY, bounded
 from geocosserat.results import seal
 from geocosserat.results.atomic import write_bytes
 from geocosserat.results.errors import FileError
@@ -25,6 +27,9 @@ if TYPE_CHECKING:
     import xarray
 
 FORMAT = "geocosserat solution 3"
+MOST_SECONDS, LEAST_RATE, COPIES = 30.0, 20e6, 8
+"""What reading may take: seconds, for so many bytes of the file another one, and memory for so many copies of it."""
+
 _OBJECTS = ("evaluations", "seconds", "contents", "provenance", "plan")
 _INTEGERS = ("elements", "degree", "unknowns", "reached")
 _NUMBERS = ("length", "requested", "estimated")
@@ -51,7 +56,11 @@ def save(solution: Solution, path: str | os.PathLike[str]) -> Path:
 
     Raises FileError when it cannot be written.
     """
-    return write_bytes(path, seal.seal(_image(solution)))
+    try:
+        sealed = seal.seal(_image(solution))
+    except ValueError as error:
+        raise FileError(path, "a scene that leaves room for a checksum", "another one", str(error)) from None
+    return write_bytes(path, sealed)
 
 
 def load(path: str | os.PathLike[str]) -> Solution:
@@ -60,17 +69,29 @@ def load(path: str | os.PathLike[str]) -> Solution:
     Raises FileError when the file is missing, is not a solution file, or differs in any byte from what was
     written.
     """
-    with h5netcdf.File(io.BytesIO(_verified(path)), "r") as file:
+    sealed = _verified(path)
+    size, seconds = len(sealed), MOST_SECONDS + len(sealed) / LEAST_RATE
+    try:
+        return Solution(**bounded(partial(_contents, path, sealed), seconds, MEMORY + COPIES * size))
+    except FileError:
+        raise
+    except Exception as error:  # the library may make anything of a file that was written to do harm
+        said = " ".join(str(error).split())[:200] or type(error).__name__
+        raise FileError(path, "the contents of a solution file", f"others ({said})", "repeat the run") from None
+
+
+def _contents(path: str | os.PathLike[str], sealed: bytes) -> dict[str, Any]:
+    """The fields of a solution."""
+    with h5netcdf.File(io.BytesIO(sealed), "r") as file:
         attributes = dict(file.attrs)
         if attributes.get("format") != FORMAT:
             raise FileError(path, f"the format {FORMAT!r}", repr(attributes.get("format")),
                             "read it with the version that wrote it, named in its attribute `provenance`")
-        values: dict[str, Any] = {name: variable[...] for name, variable in file.variables.items()}
+        values: dict[str, Any] = {name: file.variables[name][...] for name in SHAPES if name in file.variables}
     values |= {name: json.loads(attributes[name]) for name in _OBJECTS}
     values |= {name: attributes[name] for name in (*TEXTS, *_INTEGERS)}
     values |= {name: attributes.get(name) for name in _NUMBERS}
-    recovered: dict[str, Any] = {field.name: values.get(field.name) for field in fields(Solution)}
-    return Solution(**recovered)
+    return {field.name: values.get(field.name) for field in fields(Solution)}
 
 
 def dataset(path: str | os.PathLike[str]) -> xarray.Dataset:
@@ -80,7 +101,7 @@ def dataset(path: str | os.PathLike[str]) -> xarray.Dataset:
     """
     import xarray
 
-    _verified(path)
+    load(path)  # which a process of its own does within bounds; xarray reads what it did
     return xarray.open_dataset(Path(path), engine="h5netcdf")
 
 

@@ -12,15 +12,19 @@ from collections.abc import Iterator
 
 MARK = "geocosserat-sha256:"
 _DIGITS = 64
+_MOST_MARKS = 16
 BLANK = MARK + "0" * _DIGITS
 
 
 def seal(image: bytes) -> bytes:
     """The image with the digits of its one BLANK filled in.
 
-    Raises ValueError unless BLANK occurs exactly once.
+    Raises ValueError unless BLANK occurs exactly once, and among few other checksums.
     """
-    count = image.count(BLANK.encode())
+    count, marks = image.count(BLANK.encode()), image.count(MARK.encode())
+    if marks > _MOST_MARKS:
+        raise ValueError(f"checksum: expected the text {MARK!r} at most {_MOST_MARKS} times in the file, found it "
+                         f"{marks} times; take it out of the scene and the title")
     if count != 1:
         raise ValueError(f"checksum: expected the text {BLANK!r} once in the file, found it {count} times; "
                          f"take it out of the scene and the title")
@@ -40,11 +44,14 @@ def intact(sealed: bytes) -> bool:
 
 
 def _places(sealed: bytes) -> Iterator[int]:
-    """Where checksums may stand: several places, if a scene quotes that of another file in a comment."""
-    at = sealed.find(MARK.encode())
-    while at >= 0:
-        yield at + len(MARK)
+    """Where checksums may stand: several places, if a scene quotes that of another file in a comment. Not so many that
+    trying them all would take long."""
+    at = -1
+    for _ in range(_MOST_MARKS):
         at = sealed.find(MARK.encode(), at + 1)
+        if at < 0:
+            return
+        yield at + len(MARK)
 
 
 def _matches(sealed: bytes, at: int) -> bool:

@@ -121,10 +121,12 @@ class Solution:
                              f"found {found} for a {self.motion} motion; correct the one or the other")
         for name, dimensions in SHAPES.items():
             array, expected = getattr(self, name), tuple(sizes[dimension] for dimension in dimensions)
-            if array is not None and array.shape != expected:
+            if array is None and name == "angle":  # in space
+                continue
+            if array is None or array.shape != expected:
                 raise ValueError(f"solution.{name}: expected the shape {expected} ({', '.join(dimensions)}), "
-                                 f"found {array.shape}; correct it: {self.elements} elements of degree "
-                                 f"{self.degree} have {points + 1} nodes and {points} points")
+                                 f"found {None if array is None else array.shape}; correct it: {self.elements} "
+                                 f"elements of degree {self.degree} have {points + 1} nodes and {points} points")
         for name in ("time", "u", "u_point"):
             array = getattr(self, name)
             if array.size == 0 or not np.all(np.isfinite(array)) or np.any(np.diff(array) <= 0):

@@ -72,9 +72,10 @@ def cvode(
             reason = f"CVODE returned values that are not finite at t = {t:.6g}"
             break
         states[done] = result.y
-        frame(done, states[done])
         done += 1
         progress((t - times[0]) / (times[-1] - times[0]), counted.instants)
+        if frame(done - 1, states[done - 1], counted.instants):
+            break
     return Trajectory(
         times=times[:done].copy(),
         states=states[:done],

@@ -24,6 +24,10 @@ def _silent(*_: object) -> None:
     pass
 
 
+def _onwards(*_: object) -> bool:
+    return False
+
+
 def integrate(
     kernel: Kernel,
     start: Array,
@@ -32,7 +36,7 @@ def integrate(
     rtol: float = 1e-6,
     atol: float | Array = 1e-9,
     progress: Progress = _silent,
-    frame: Frame = _silent,
+    frame: Frame = _onwards,
     switches: Sequence[float] = (),
 ) -> Trajectory:
     """Integrates y' = f(t, y) from `start` (size,) at times[0]; states at all of `times` (T >= 2, increasing).

@@ -37,14 +37,15 @@ def in_pieces(
         wanted = np.flatnonzero((times > a + hair) & (times < b - hair))
         ends = np.array([a + (hair if a > first else 0.0), b - (hair if b < last else 0.0)])
         told = partial(_tell_share, progress, ((a - first) / (last - first), (b - a) / (last - first)), total.steps)
-        noted = partial(_note_wanted, frame, wanted)
+        noted = partial(_note_wanted, frame, wanted, total.steps)
         found = piece(state, np.concatenate([ends[:1], times[wanted], ends[1:]]), told, noted)
         state = found.states[-1]
         states = found.states[1 : 1 + len(wanted)]
         count = len(total.times) + len(states)
         if found.reached and count < len(times) and abs(times[count] - b) <= hair:
             states = np.concatenate([states, state[None]])  # an instant of output on the switch, or the end
-            frame(count, state)
+            # no pause on a switch: from there one would see its other side
+            frame(count, state, total.steps + found.steps)
             count += 1
         total = Trajectory(
             times=times[:count].copy(),
@@ -65,7 +66,6 @@ def _tell_share(progress: Progress, share: tuple[float, float], before: int, fra
     progress(share[0] + share[1] * fraction, before + steps)
 
 
-def _note_wanted(frame: Frame, wanted: NDArray[np.intp], i: int, y: Array) -> None:
+def _note_wanted(frame: Frame, wanted: NDArray[np.intp], before: int, i: int, y: Array, steps: int) -> bool:
     """An instant of a piece as one of the whole; its end is told by the whole."""
-    if i <= len(wanted):
-        frame(int(wanted[i - 1]), y)
+    return i <= len(wanted) and frame(int(wanted[i - 1]), y, before + steps)

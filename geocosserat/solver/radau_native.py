@@ -141,14 +141,16 @@ def radau_native(
         if code < 0:
             states[0] = start
             return Trajectory(times[:1].copy(), states[:1], 1, 0, 0, False, AT_START[code])
-        done = 1
+        done, paused = 1, False
         while done < count and not reason:
             code = lib.radau_advance(memory, instants, count, reached, rows)
             now = lib.radau_state(memory, counts)
-            for i in range(done, reached[0]):
-                frame(i, states[i])
-                progress((float(times[i]) - first) / (last - first), counts[0])
-            done = reached[0]
+            while done < reached[0] and not paused:
+                progress((float(times[done]) - first) / (last - first), counts[0])
+                paused = frame(done, states[done], counts[0])
+                done += 1
+            if paused:  # what came after that instant is left out
+                break
             if code == PAUSED:
                 fraction = (now - first) / (last - first)
                 if hope.lost(counts[0], fraction):
@@ -158,4 +160,4 @@ def radau_native(
                 reason = f"Radau stopped at t = {now:.6g} after {counts[0]} steps: {REASONS[code]}"
     finally:
         lib.radau_free(memory)
-    return Trajectory(times[:done].copy(), states[:done], counts[1], counts[2], counts[0], not reason, reason)
+    return Trajectory(times[:done].copy(), states[:done], counts[1], counts[2], counts[0], done == count, reason)

@@ -26,9 +26,9 @@ def reduced(integrator: Integrator) -> Integrator:
         whole = np.empty((len(times), kernel.size))
         whole[0] = small.whole(float(times[0]), start[small.moving])
 
-        def note(i: int, x: Array) -> None:
+        def note(i: int, x: Array, steps: int) -> bool:
             whole[i] = small.whole(float(times[i]), x)
-            frame(i, whole[i])
+            return frame(i, whole[i], steps)
 
         found = integrator(small, start[small.moving], times, rtol, atol[small.moving], progress, note)
         return replace(found, states=whole[: len(found.states)])

@@ -30,7 +30,7 @@ def _integrate(
     counted = Counted(kernel)
     states = np.empty((len(times), kernel.size))
     states[0] = start
-    done, steps, reason, hope = 1, 0, "", Hope()
+    done, steps, reason, hope, paused = 1, 0, "", Hope(), False
     try:
         solver = method(
             _fresh(counted),
@@ -43,7 +43,7 @@ def _integrate(
         )
     except (ArithmeticError, np.linalg.LinAlgError) as error:
         return Trajectory(times[:1].copy(), states[:1], counted.rates, counted.jacobians, 0, False, str(error))
-    while solver.status == "running" and done < len(times):
+    while solver.status == "running" and done < len(times) and not paused:
         if hope.lost(steps, (solver.t - times[0]) / (times[-1] - times[0])):
             reason = f"{method.__name__} stopped at t = {solver.t:.6g}: {steps} steps did not reach the end"
             break
@@ -64,13 +64,13 @@ def _integrate(
             reason = f"{method.__name__} stopped at t = {solver.t:.6g}: its steps go nowhere"
             break
         interpolant = None
-        while done < len(times) and times[done] <= solver.t:
+        while done < len(times) and times[done] <= solver.t and not paused:
             if times[done] == solver.t:
                 states[done] = solver.y
             else:
                 interpolant = interpolant or solver.dense_output()
                 states[done] = interpolant(times[done])
-            frame(done, states[done])
+            paused = bool(frame(done, states[done], steps))
             done += 1
         progress((solver.t - times[0]) / (times[-1] - times[0]), steps)
     return Trajectory(

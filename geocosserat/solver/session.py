@@ -128,9 +128,10 @@ class Session(ABC):
                 reason = f"{self.name} returned values that are not finite at t = {now:.6g}"
                 break
             states[done] = self.y
-            frame(done, states[done])
             done += 1
             progress((now - first) / (last - first), steps)
+            if frame(done - 1, states[done - 1], steps):
+                break
         return Trajectory(
             times=times[:done].copy(),
             states=states[:done],

@@ -8,8 +8,9 @@ from geocosserat.kernel.contract import Array
 Progress = Callable[[float, int], None]
 """Called with the fraction of the time span done and the number of steps so far."""
 
-Frame = Callable[[int, Array], None]
-"""Called with the number and the state (size,) of each instant of output that is reached."""
+Frame = Callable[[int, Array, int], bool]
+"""Called with the number and the state (size,) of each instant of output that is reached, and the steps so far.
+What it returns says whether to pause there."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -17,7 +18,8 @@ class Trajectory:
     """States at the instants asked for.
 
     times (T,), states (T, size): up to the last instant that was reached. reached: whether that is the last one
-    asked for; otherwise `reason` says why not. Counts: calls of the rate, of the Jacobian, steps tried.
+    asked for; otherwise `reason` says why not, or is empty if it was told to pause. Counts: calls of the rate, of the
+    Jacobian, steps tried.
     """
 
     times: Array

@@ -23,13 +23,13 @@ STAGES = {
     "kernel": ("algebra", "model", "discretisation"),  # kernels are text by now: no sympy, no templates
     "solver": ("kernel.contract", "kernel.compile"),  # integrates anything that keeps the contract; knows no rods
     "statics": ("kernel.contract",),  # where any such system rests; knows no rods
-    "results": ("algebra.groups", "model.errors", "kernel.contract", "solver.trajectory"),
+    "results": ("bounded", "algebra.groups", "model.errors", "kernel.contract", "solver.trajectory"),
     "planning": ("algebra.groups", "discretisation.mesh", "model"),  # which setting, for which accuracy
     "referee": ("algebra",),  # judges statements about rods; knows no paper
     "bounded": (),  # work in a process of its own
     "passivity": ("algebra", "model", "derivation.convert", "derivation.notation", "referee.decide"),  # judges laws
 }
-BASE = ("version", "shipped")  # free to all; import nothing of the package
+BASE = ("version", "shipped", "locks")  # free to all; import nothing of the package
 SEE_ALL = ("", "__main__", "cli", "conductor")  # "" is geocosserat/__init__.py
 
 EVERYWHERE = ("",)

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import io
+import os
 import random
+import time
 import zipfile
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -235,6 +238,73 @@ def test_the_seal_needs_its_one_blank() -> None:
         seal.seal(2 * seal.BLANK.encode())
     with pytest.raises(ValueError, match="found it 0 times"):
         seal.seal(b"")
+
+
+@pytest.mark.parametrize("harm", [seal.BLANK, seal.MARK * 100], ids=["a blank checksum", "a hundred of them"])
+def test_a_scene_that_leaves_no_room_for_a_checksum_is_one_message(harm: str, tmp_path: Path) -> None:
+    """Nothing is written that could not be read again."""
+    with pytest.raises(FileError, match=r"solution\.nc: expected .*; checksum: .*take it out of the scene"):
+        save(rolling(scene=f"# {harm}\n"), tmp_path / "solution.nc")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_file_full_of_checksums_is_refused_at_once(tmp_path: Path, patience: None) -> None:
+    """Each would take as long to try as the file is large."""
+    path = tmp_path / "solution.nc"
+    path.write_bytes((seal.MARK + "0" * 64).encode() * 20_000)
+    with pytest.raises(FileError, match="the checksum differs"):
+        load(path)
+
+
+def _forged(path: Path, change: Callable[[h5py.File], None]) -> None:
+    """A file changed by somebody who can make checksums too."""
+    image = io.BytesIO(path.read_bytes())
+    with h5py.File(image, "r+") as file:
+        change(file)
+        file.attrs["checksum"] = seal.BLANK
+    path.write_bytes(seal.seal(image.getvalue()))
+
+
+def _without(name: str) -> Callable[[h5py.File], None]:
+    return lambda file: file.__delitem__(name)
+
+
+def _with(name: str, value: Any) -> Callable[[h5py.File], None]:
+    return lambda file: file.attrs.__setitem__(name, value)
+
+
+def _huge(file: h5py.File) -> None:
+    """A few bytes that claim to be as many numbers as no memory holds."""
+    del file["work"]
+    file.create_dataset("work", (10**12,), dtype="f8", chunks=(1000,), fillvalue=1.0)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        _without("position"), _with("plan", "[" * 100_000), _with("plan", "{"), _with("elements", 10**18),
+        _with("elements", "many"), _with("motion", "sideways"), _with("evaluations", "[1]"), _with("contents", "NaN x"),
+        _with("length", "a\nb"), _huge,
+    ],
+)  # fmt: skip
+def test_a_forged_file_is_one_message(change: Callable[[h5py.File], None], tmp_path: Path, patience: None) -> None:
+    """Whatever is in it, with a right checksum: within bounds of time and memory, and on one line."""
+    path = save(rolling(), tmp_path / "solution.nc")
+    _forged(path, change)
+    with pytest.raises(FileError, match=r"^[^\n]*solution\.nc: expected the contents of a solution file, found others"):
+        load(path)
+
+
+def test_a_library_that_hangs_on_a_file_or_dies_of_it_is_ended(
+    tmp_path: Path, patience: None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It works in a process of its own."""
+    path = save(rolling(), tmp_path / "solution.nc")
+    for harm, said in ((lambda *_: time.sleep(100), "more than 0.2"), (lambda *_: os.abort(), "ended early")):
+        monkeypatch.setattr(netcdf, "MOST_SECONDS", 0.2)
+        monkeypatch.setattr(netcdf.h5netcdf, "File", harm)
+        with pytest.raises(FileError, match=rf"found others \(.*{said}"):
+            load(path)
 
 
 def test_the_file_needs_no_other_reader_than_hdf5(tmp_path: Path) -> None:

@@ -133,7 +133,7 @@ def test_progress_grows_to_one_and_every_frame_is_told(method: str) -> None:
     times = np.linspace(1.0, 2.0, 6)
     found = integrate(
         forced(7), np.ones(7), times, method, progress=lambda *now: told.append(now),
-        frame=lambda number, state: frames.append((number, state.copy())),
+        frame=lambda number, state, _: frames.append((number, state.copy())),
     )  # fmt: skip
     fractions, steps = np.array(told).T
     assert np.all(np.diff(fractions) >= 0)

@@ -124,7 +124,7 @@ def test_progress_is_told_and_frames_are_handed_on(library: Path) -> None:
     told: list[float] = []
     frames: list[int] = []
     integrate(NativeForced(library, 7), np.ones(7), TIMES, progress=lambda fraction, steps: told.append(fraction),
-              frame=lambda number, state: frames.append(number))  # fmt: skip
+              frame=lambda number, state, _: frames.append(number))  # fmt: skip
     assert told == sorted(told)
     assert told[-1] == pytest.approx(1.0)
     assert frames == [1, 2, 3, 4, 5]

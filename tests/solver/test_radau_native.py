@@ -170,7 +170,7 @@ def test_frames_and_progress_are_told(library: Path) -> None:
     frames: list[tuple[int, Array]] = []
     found = integrate(NativeForced(library, 7), np.ones(7), TIMES, "radau",
                       progress=lambda fraction, steps: told.append(fraction),
-                      frame=lambda number, state: frames.append((number, state.copy())))  # fmt: skip
+                      frame=lambda number, state, _: frames.append((number, state.copy())))  # fmt: skip
     assert told == sorted(told)
     assert told[-1] == pytest.approx(1.0)
     assert [number for number, _ in frames] == [1, 2, 3, 4, 5]
