@@ -6,14 +6,16 @@
  * quadratures, which nothing depends on; they are integrated by the same formula and cost no linear algebra.
  *
  * Each step solves for the values at all stages by Newton's method, whose matrix falls apart into a real and (s - 1) / 2
- * complex ones of the size of the system. Constraints are eliminated once for a Jacobian, not for every step size. The
- * Jacobian is that of the middle of the step, where the last step leads.
+ * complex ones of the size of the system; shifted.c, which comes before this file, solves with them. Constraints are
+ * eliminated once for a Jacobian, not for every step size. The Jacobian is that of the middle of the step, where the last
+ * step leads.
  *
  * Source: E. Hairer and G. Wanner, Solving Ordinary Differential Equations II (1996), section IV.8; for the embedded
  * formula and the choice of steps too.
  */
 #include <float.h>
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -73,27 +75,33 @@ typedef struct radau {
     int finite;                /* whether the last rate was */
     int of;                    /* where the Jacobian is from: PAST, MIDDLE or NOW */
     int factored;              /* whether the factors fit it and h */
+    void *memory;              /* of all arrays */
     int *order;                /* of the entries here: first what moves, then what constraints fix, then quadratures */
     int ordered;               /* whether the problem has them in this order too */
-    int width, inner;          /* of the matrices below, and of that of the constraints: padded, see BLOCK */
-    int *inner_rows, *rows[PAIRS + 1]; /* their order in the factors */
-    double *numbers;           /* room for all that follows */
+    int inner, *inner_rows;    /* of the matrix of the constraints: its size, padded, see BLOCK; the order in its factors */
+    shifted linear;            /* what is left when they are eliminated */
+    number g, *x;              /* the step over the method's eigenvalues; right-hand sides and solutions of their systems */
+    number row[MOST_STAGES];   /* the same as in the method: row[s] for all parts, column[k] for all stages */
+    double column[PAIRS + 1][2][MOST_STAGES + 1];
     double *y, *slope, *atol, *scale; /* the state, its rate, tolerances, one over what an error may be */
     double *Z, *last_Z, *F, *change;  /* [stages][size] displacements, now and in the last step; rates; Newton's change */
     double *trial, *error;
     double *asked, *told;                             /* a state and its rate in the order of the problem */
-    double *schur, *coupling, *answers, *bound; /* of the Jacobian, see `condense` */
-    double *matrix[PAIRS + 1];                  /* factors: a real matrix, then complex ones */
-    double *right, *part, *gap, *closing, *asking, *made; /* of linear systems, see `newton` and `condense` */
-    double *room;                                         /* to factor in */
+    double *coupling, *answers, *bound;               /* of the Jacobian, see `condense` */
+    double *gap, *closing, *asking, *made;            /* of linear systems, see `newton` and `condense` */
+    double *room;                                     /* to factor in */
 } radau;
 
-/* The step over the method's eigenvalue, re + i im. */
-static void share_of(const radau *r, int k, double *re, double *im)
+/* The step over the method's eigenvalues. */
+static number shares(const radau *r)
 {
-    const double *v = r->m.value[k], size = v[0] * v[0] + v[1] * v[1];
-    *re = r->h * v[0] / size;
-    *im = -r->h * v[1] / size;
+    number g = {{0.0}, {0.0}};
+    for (int k = 0; k <= r->m.stages / 2; ++k) {
+        const double *v = r->m.value[k], size = v[0] * v[0] + v[1] * v[1];
+        g.re[k] = r->h * v[0] / size;
+        g.im[k] = -r->h * v[1] / size;
+    }
+    return g;
 }
 
 /* y -= f x */
@@ -104,7 +112,8 @@ static inline void subtract(int n, double f, const double *restrict x, double *r
 }
 
 
-/* Matrices are stored by columns, and padded by ones on the diagonal to a multiple of BLOCK: no loop has a remainder.
+/* Matrices of constraints are stored by columns, and padded by ones on the diagonal to a multiple of BLOCK: no loop has a
+ * remainder.
  *
  * Factors are those by blocks. With A = [[P, Q], [R, T]], P of the size of a block, the inverse of P takes its place and
  * -R / P that of R; then the same with T - R / P Q. A solution then waits once for a block, not once for a column. Rows
@@ -116,19 +125,19 @@ static int padded(int n)
     return (n + BLOCK - 1) / BLOCK * BLOCK;
 }
 
-/* The row from k on whose entry of a column is to be the pivot, -1 if all are zero or not finite. im: NULL if it is real. */
-static inline int pivot_of(int k, int n, const double *re, const double *im)
+/* The row from k on whose entry of a column is to be the pivot, -1 if all are zero or not finite. */
+static inline int pivot_of(int k, int n, const double *column)
 {
     double lane[BLOCK] = {0.0}, most = 0.0;
     for (int i = k / BLOCK * BLOCK; i < n; i += BLOCK) /* in lanes, since a single one would wait for every comparison */
         for (int l = 0; l < BLOCK; ++l) {
-            const double size = i + l < k ? 0.0 : fabs(re[i + l]) + (im ? fabs(im[i + l]) : 0.0);
+            const double size = i + l < k ? 0.0 : fabs(column[i + l]);
             lane[l] = size > lane[l] ? size : lane[l];
         }
     for (int l = 0; l < BLOCK; ++l)
         most = lane[l] > most ? lane[l] : most;
     for (int i = k; i < n && most > 0.0; ++i)
-        if (fabs(re[i]) + (im ? fabs(im[i]) : 0.0) >= (i == k ? 0.1 : 1.0) * most)
+        if (fabs(column[i]) >= (i == k ? 0.1 : 1.0) * most)
             return i;
     return -1;
 }
@@ -155,21 +164,6 @@ static inline void add_block(int n, int apart, const double *restrict A, const d
         y[i] = y[i] + f * a[i] + g * b[i] + h * c[i] + k * d[i];
 }
 
-/* The same for complex ones: A + i B, x + i u, y + i v. */
-static inline void add_complex_block(int n, int apart, const double *restrict A, const double *restrict B, const double *x,
-                                     const double *u, double *restrict y, double *restrict v)
-{
-    for (int k = 0; k < BLOCK; k += 2) {
-        const double *restrict a = A + k * apart, *restrict b = a + apart;
-        const double *restrict c = B + k * apart, *restrict d = c + apart;
-        const double f = x[k], g = x[k + 1], p = u[k], q = u[k + 1];
-        for (int i = 0; i < n; ++i) {
-            y[i] = y[i] + f * a[i] - p * c[i] + g * b[i] - q * d[i];
-            v[i] = v[i] + f * c[i] + p * a[i] + g * d[i] + q * b[i];
-        }
-    }
-}
-
 /* Factors A [n][n] in place; order [n]: of its rows; own [n]: room. Returns 1 if it is singular. */
 static int factor(int n, double *restrict A, int *order, double *restrict own)
 {
@@ -180,7 +174,7 @@ static int factor(int n, double *restrict A, int *order, double *restrict own)
         double *block = A + first * n + first;
         for (int k = 0; k < BLOCK; ++k) { /* by Gauss and Jordan */
             double *column = block + k * n;
-            const int best = pivot_of(first + k, n, column - first, NULL);
+            const int best = pivot_of(first + k, n, column - first);
             if (best < 0)
                 return 1;
             if (best != first + k)
@@ -226,77 +220,6 @@ static void solve(int n, const double *A, const int *order, int sides, int apart
             }
             add_block(first, n, A + first * n, y, x + s * apart);
         }
-}
-
-/* The same for a complex matrix: real parts [n][n], then imaginary ones; own [2 n]. */
-static int factor_complex(int n, double *restrict A, int *order, double *restrict own)
-{
-    double *restrict B = A + n * n, *restrict also = own + n;
-    for (int i = 0; i < n; ++i)
-        order[i] = i;
-    for (int first = 0; first < n; first += BLOCK) {
-        const int rows = n - first, corner = first * n + first;
-        for (int k = 0; k < BLOCK; ++k) {
-            double *re = A + corner + k * n, *im = B + corner + k * n;
-            const int best = pivot_of(first + k, n, re - first, im - first);
-            if (best < 0)
-                return 1;
-            if (best != first + k)
-                exchange_rows(n, 2 * n, A, order, first + k, best);
-            memcpy(own, re, rows * sizeof *own);
-            memcpy(also, im, rows * sizeof *also);
-            const double scale = 1.0 / (own[k] * own[k] + also[k] * also[k]), f = scale * own[k], g = -scale * also[k];
-            own[k] = also[k] = 0.0;
-            for (int j = 0; j < BLOCK; ++j) {
-                double *restrict y = A + corner + j * n, *restrict v = B + corner + j * n;
-                const double x = j == k ? 0.0 : f * y[k] - g * v[k], u = j == k ? 0.0 : f * v[k] + g * y[k];
-                for (int i = 0; i < rows && j != k; ++i) {
-                    y[i] -= x * own[i] - u * also[i];
-                    v[i] -= x * also[i] + u * own[i];
-                }
-                y[k] = x;
-                v[k] = u;
-            }
-            for (int i = 0; i < rows; ++i) {
-                re[i] = g * also[i] - f * own[i];
-                im[i] = -f * also[i] - g * own[i];
-            }
-            re[k] = f;
-            im[k] = g;
-        }
-        for (int j = first + BLOCK; j < n; ++j) {
-            const int at = j * n + first, next = at + BLOCK, below = corner + BLOCK;
-            add_complex_block(rows - BLOCK, n, A + below, B + below, A + at, B + at, A + next, B + next);
-        }
-    }
-    return 0;
-}
-
-/* b and x: real parts [n], then imaginary ones. */
-static void solve_complex(int n, const double *A, const int *order, const double *b, double *x)
-{
-    const double *B = A + n * n;
-    double *u = x + n;
-    for (int i = 0; i < n; ++i) {
-        x[i] = b[order[i]];
-        u[i] = b[n + order[i]];
-    }
-    for (int first = 0; first + BLOCK < n; first += BLOCK) {
-        const int below = first * n + first + BLOCK, next = first + BLOCK;
-        add_complex_block(n - next, n, A + below, B + below, x + first, u + first, x + next, u + next);
-    }
-    for (int first = n - BLOCK; first >= 0; first -= BLOCK) {
-        double y[BLOCK] = {0.0}, v[BLOCK] = {0.0};
-        const int corner = first * n + first;
-        add_complex_block(BLOCK, n, A + corner, B + corner, x + first, u + first, y, v);
-        for (int l = 0; l < BLOCK; ++l) {
-            x[first + l] = y[l];
-            u[first + l] = v[l];
-            y[l] = -y[l];
-            v[l] = -v[l];
-        }
-        add_complex_block(first, n, A + first * n, B + first * n, y, v, x, u);
-    }
 }
 
 /* The sum of squares, in lanes, since a single sum would wait for every addition. */
@@ -359,13 +282,14 @@ static int factor_bound(radau *r, const double *J)
  * constraints: answers = -N \ K, schur = M - C N \ K. Returns 1 if they cannot be. */
 static int condense(radau *r, int where)
 {
-    const int n = r->size, d = r->moving, a = r->fixed, v = r->inner;
+    const int n = r->size, d = r->moving, a = r->fixed, v = r->inner, w = r->linear.width;
     const int *moves = r->order, *fixes = r->order + d;
     const double *J = linearise(r, where);
+    double *schur = r->linear.H;
     for (int i = 0; i < d; ++i) {
         const double *row = J + (size_t)moves[i] * n;
         for (int j = 0; j < d; ++j)
-            r->schur[j * d + i] = row[moves[j]];
+            schur[j * w + i] = row[moves[j]];
         for (int j = 0; j < a; ++j)
             r->coupling[j * d + i] = row[fixes[j]];
     }
@@ -376,7 +300,8 @@ static int condense(radau *r, int where)
             r->asking[j * v + i] = -J[(size_t)fixes[i] * n + moves[j]];
     solve(v, r->bound, r->inner_rows, d, v, r->asking, r->answers);
     for (int j = 0; j < d && a; ++j)
-        multiply(d, a, r->coupling, r->answers + j * v, r->schur + j * d);
+        multiply(d, a, r->coupling, r->answers + j * v, schur + j * w);
+    reduce(&r->linear);
     return 0;
 }
 
@@ -384,41 +309,6 @@ static int condense(radau *r, int where)
 static int renew(radau *r, int where)
 {
     return !(where == MIDDLE && r->last_h > 0.0 && !condense(r, MIDDLE)) && condense(r, NOW);
-}
-
-/* Factors  1 - g schur  for each g = h / eigenvalue. Returns 1 if one is singular. */
-static int factor_all(radau *r)
-{
-    const int d = r->moving, w = r->width;
-    for (int k = 0; k <= r->m.stages / 2; ++k) {
-        double *A = r->matrix[k], *B = A + w * w, re, im;
-        int *rows = r->rows[k];
-        share_of(r, k, &re, &im);
-        if (w > d)
-            memset(A, 0, (k ? 2 : 1) * (size_t)w * w * sizeof *A);
-        for (int j = 0; j < d; ++j) {
-            for (int i = 0; i < d; ++i)
-                A[j * w + i] = -re * r->schur[j * d + i];
-            for (int i = 0; i < d && k; ++i)
-                B[j * w + i] = -im * r->schur[j * d + i];
-        }
-        for (int i = 0; i < w; ++i)
-            A[i * w + i] += 1.0;
-        if (k ? factor_complex(w, A, rows, r->room) : factor(w, A, rows, r->room))
-            return 1;
-    }
-    return 0;
-}
-
-/* Solves for one part of Newton's change of what moves, from `right` [width] into `part`; if it is complex, imaginary ones
- * follow. */
-static void solve_part(radau *r, int k)
-{
-    const int w = r->width;
-    if (k)
-        solve_complex(w, r->matrix[k], r->rows[k], r->right, r->part);
-    else
-        solve(w, r->matrix[0], r->rows[0], 1, w, r->right, r->part);
 }
 
 /* The rate, and whether all of it is finite. */
@@ -482,10 +372,11 @@ static inline void multiply_stages(const int S, int rows, int columns, int apart
 /* Newton's change of all stages into `change`, from rates F at displacements Z. */
 static inline void newton_of(radau *r, const int S)
 {
-    const int n = r->size, d = r->moving, a = r->fixed, w = r->width, v = r->inner, next = a ? d : n;
+    const int n = r->size, d = r->moving, a = r->fixed, v = r->inner, next = a ? d : n, *order = r->linear.order;
     const double *restrict F = r->F, *restrict Z = r->Z;
-    double *restrict right = r->right, *restrict change = r->change;
-    const double *restrict x = r->part;
+    const number g = r->g;
+    double *restrict change = r->change;
+    number *restrict x = r->x;
     if (a) { /* the constraints are solved for: what moves then does so by itself */
         for (int s = 0; s < S; ++s) {
             for (int i = 0; i < a; ++i)
@@ -496,45 +387,26 @@ static inline void newton_of(radau *r, const int S)
         multiply_stages(S, d, a, d, r->coupling, r->closing, v, r->made, d);
         F = r->made;
     }
-    for (int k = 0; k <= S / 2; ++k) {
-        double p[MOST_STAGES], q[MOST_STAGES], re, im;
-        share_of(r, k, &re, &im);
+    for (int i = 0; i < d; ++i) { /* by parts, each in its lane */
+        const double *own = F + order[i], *at = Z + order[i];
+        number f = {{0.0}, {0.0}}, z = f;
         for (int s = 0; s < S; ++s) {
-            p[s] = r->m.row[k][s][0];
-            q[s] = r->m.row[k][s][1];
+            f.re += own[s * next] * r->row[s].re;
+            f.im += own[s * next] * r->row[s].im;
+            z.re += at[s * n] * r->row[s].re;
+            z.im += at[s * n] * r->row[s].im;
         }
-        if (k)
-            for (int i = 0; i < d; ++i) {
-                double f = 0.0, g = 0.0, y = 0.0, z = 0.0;
-                for (int s = 0; s < S; ++s) {
-                    f += p[s] * F[s * next + i];
-                    g += q[s] * F[s * next + i];
-                    y += p[s] * Z[s * n + i];
-                    z += q[s] * Z[s * n + i];
-                }
-                right[i] = re * f - im * g - y;
-                right[w + i] = re * g + im * f - z;
-            }
-        else
-            for (int i = 0; i < d; ++i) {
-                double f = 0.0, y = 0.0;
-                for (int s = 0; s < S; ++s) {
-                    f += p[s] * F[s * next + i];
-                    y += p[s] * Z[s * n + i];
-                }
-                right[i] = re * f - y;
-            }
-        solve_part(r, k);
-        for (int s = 0; s < S; ++s) {
-            double *restrict own = change + s * n;
-            const double f = r->m.column[k][s][0], g = r->m.column[k][s][1];
-            if (k)
-                for (int i = 0; i < d; ++i)
-                    own[i] += f * x[i] - g * x[w + i];
-            else
-                for (int i = 0; i < d; ++i)
-                    own[i] = f * x[i];
-        }
+        f = times(g, f);
+        x[i] = (number){f.re - z.re, f.im - z.im};
+    }
+    solve_shifted(&r->linear, x);
+    for (int i = 0; i < d; ++i) {
+        double sum[MOST_STAGES + 1] = {0.0};
+        for (int k = 0; k <= S / 2; ++k)
+            for (int s = 0; s <= MOST_STAGES; ++s)
+                sum[s] += r->column[k][0][s] * x[i].re[k] - r->column[k][1][s] * x[i].im[k];
+        for (int s = 0; s < S; ++s)
+            change[s * n + order[i]] = sum[s];
     }
     for (int s = 0; s < S; ++s) {
         memcpy(change + s * n + d, r->closing + s * v, a * sizeof *change);
@@ -656,9 +528,11 @@ static double error_of(radau *r, const double *rate)
             sum += r->m.error[s] * r->Z[s * n + i];
         r->error[i] = sum;
     }
-    memcpy(r->right, r->error, d * sizeof *r->right);
-    solve_part(r, 0); /* of what moves: constraints hold */
-    memcpy(r->error, r->part, d * sizeof *r->error);
+    for (int i = 0; i < d; ++i)
+        r->x[i] = (number){{r->error[r->linear.order[i]]}, {0.0}};
+    solve_shifted(&r->linear, r->x); /* of what moves: constraints hold */
+    for (int i = 0; i < d; ++i)
+        r->error[r->linear.order[i]] = r->x[i].re[0];
     memset(r->error + d, 0, a * sizeof *r->error);
     const double total = squares(n, r->error, r->scale);
     return sqrt(total / (d + quadratures));
@@ -726,7 +600,8 @@ static int step(radau *r)
         predict(r);
         if (doubt > r->of && renew(r, doubt))
             return SINGULAR;
-        if (!r->factored && factor_all(r)) {
+        r->g = shares(r);
+        if (!r->factored && shift(&r->linear, r->g)) {
             doubt = NOW; /* what was foreseen may be far off */
             change_step(r, 0.5 * r->h);
             continue;
@@ -765,34 +640,45 @@ static int step(radau *r)
     return trouble;
 }
 
-/* Room for the arrays of an integration. Returns 1 if there is none. */
-static int make_room(radau *r)
+/* So many bytes of a room, in whole cache lines; NULL where they are only counted. */
+static void *part_of(char *room, size_t *used, size_t bytes)
 {
-    const size_t n = r->size, d = r->moving, a = r->fixed, S = r->m.stages, w = r->width, v = r->inner;
-    const size_t of_pair[PAIRS] = {2 * w * w, S > 3 ? 2 * w * w : 0, S > 5 ? 2 * w * w : 0};
-    struct { double **array; size_t count; } rooms[] = {
+    void *part = room ? room + *used : NULL;
+    *used += (bytes + 63) / 64 * 64;
+    return part;
+}
+
+/* Lays the arrays of an integration out in a room, or counts its bytes. */
+static size_t lay_out(radau *r, char *room)
+{
+    const size_t n = r->size, d = r->moving, a = r->fixed, S = r->m.stages, v = r->inner, w = r->linear.width;
+    shifted *s = &r->linear;
+    size_t used = 0;
+    struct { double **array; size_t count; } numbers[] = {
         {&r->y, n}, {&r->slope, n}, {&r->atol, n}, {&r->scale, n}, {&r->trial, n}, {&r->error, n}, {&r->asked, n}, {&r->told, n},
         {&r->Z, S * n}, {&r->last_Z, S * n}, {&r->F, S * n}, {&r->change, S * n},
-        {&r->schur, d * d}, {&r->coupling, d * a}, {&r->answers, v * d}, {&r->asking, v * d}, {&r->bound, v * v},
-        {&r->right, 2 * w}, {&r->part, 2 * w}, {&r->gap, S * v}, {&r->closing, S * v}, {&r->made, a ? S * d : 0},
-        {&r->room, 2 * (w > v ? w : v)},
-        {&r->matrix[0], w * w}, {&r->matrix[1], of_pair[0]}, {&r->matrix[2], of_pair[1]}, {&r->matrix[3], of_pair[2]},
+        {&r->coupling, d * a}, {&r->answers, v * d}, {&r->asking, v * d}, {&r->bound, v * v},
+        {&r->gap, S * v}, {&r->closing, S * v}, {&r->made, a ? S * d : 0}, {&r->room, v},
+        {&s->H, w * d}, {&s->lower, w * d}, {&s->y, w},
     };
-    size_t total = 0;
-    for (size_t i = 0; i < sizeof rooms / sizeof *rooms; ++i)
-        total += rooms[i].count;
-    double *numbers = r->numbers = calloc(total, sizeof *numbers);
-    for (size_t i = 0; numbers && i < sizeof rooms / sizeof *rooms; ++i) {
-        *rooms[i].array = numbers;
-        numbers += rooms[i].count;
-    }
-    return !r->numbers;
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; ++i)
+        *numbers[i].array = part_of(room, &used, numbers[i].count * sizeof(double));
+    if (room)
+        memset(room, 0, used); /* what pads matrices and right-hand sides */
+    r->x = part_of(room, &used, d * sizeof *r->x);
+    s->upper = part_of(room, &used, d * (d + 1) / 2 * sizeof *s->upper);
+    s->factor = part_of(room, &used, d * sizeof *s->factor);
+    s->row = part_of(room, &used, d * sizeof *s->row);
+    s->exchanged = part_of(room, &used, d * sizeof *s->exchanged);
+    s->order = part_of(room, &used, d * sizeof *s->order);
+    r->order = part_of(room, &used, n * sizeof *r->order);
+    r->inner_rows = part_of(room, &used, v * sizeof *r->inner_rows);
+    return used;
 }
 
 void radau_free(radau *r)
 {
-    free(r->order);
-    free(r->numbers);
+    free(r->memory);
     free(r);
 }
 
@@ -801,7 +687,6 @@ void radau_free(radau *r)
 radau *radau_new(const method *m, int size, int quadratures, const double *constrained, void *data, rate_of rate,
                  jacobian_of jacobian, double t, const double *y, double rtol, const double *atol)
 {
-    const size_t n = size;
     radau *r = calloc(1, sizeof *r);
     if (!r)
         return NULL;
@@ -809,17 +694,22 @@ radau *radau_new(const method *m, int size, int quadratures, const double *const
     r->size = size;
     for (int i = 0; i < size - quadratures; ++i)
         r->fixed += constrained[i] != 0.0;
-    r->moving = size - quadratures - r->fixed;
-    r->width = padded(r->moving);
+    r->moving = r->linear.size = size - quadratures - r->fixed;
+    r->linear.width = padded_rows(r->moving);
     r->inner = padded(r->fixed);
-    int *counts = r->order = calloc(n + r->inner + (PAIRS + 1) * r->width, sizeof *counts);
-    if (make_room(r) || !counts) {
+    r->memory = malloc(lay_out(r, NULL) + 63);
+    if (!r->memory) {
         radau_free(r);
         return NULL;
     }
-    r->inner_rows = counts + n;
-    for (int k = 0; k <= PAIRS; ++k)
-        r->rows[k] = r->inner_rows + r->inner + k * r->width;
+    lay_out(r, (char *)r->memory + 63 - ((uintptr_t)r->memory + 63) % 64);
+    for (int k = 0; k <= m->stages / 2; ++k)
+        for (int s = 0; s < m->stages; ++s) {
+            r->row[s].re[k] = m->row[k][s][0];
+            r->row[s].im[k] = m->row[k][s][1];
+            r->column[k][0][s] = m->column[k][s][0];
+            r->column[k][1][s] = m->column[k][s][1];
+        }
     r->ordered = 1;
     for (int i = 0, moving = 0, fixed = r->moving; i < size; ++i) {
         const int at = i >= size - quadratures ? i : constrained[i] != 0.0 ? fixed++ : moving++;

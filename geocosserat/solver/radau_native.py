@@ -106,7 +106,7 @@ def _library() -> tuple[cffi.FFI, Any, Any]:
     """The interface, the library, and the type by which C takes arrays."""
     ffi = cffi.FFI()
     ffi.cdef(DECLARATIONS)
-    source = Path(__file__).with_name("radau.c").read_text()
+    source = "".join(Path(__file__).with_name(name).read_text() for name in ("shifted.c", "radau.c"))
     return ffi, opened(lambda path: ffi.dlopen(str(path)), source), ffi.typeof("double[]")
 
 
