@@ -20,7 +20,7 @@
 #include <string.h>
 
 enum { MOST_STAGES = 7, PAIRS = (MOST_STAGES - 1) / 2 };
-enum { REACHED = 0, PAUSED = 1, STANDSTILL = -1, DIVERGED = -2, NOT_FINITE = -3, SINGULAR = -4 };
+enum { REACHED = 0, PAUSED = 1, STANDSTILL = -1, DIVERGED = -2, NOT_FINITE = -3, SINGULAR = -4, NO_ROOM = -5 };
 enum { PAST, MIDDLE, NOW }; /* a step before this one; where the middle of this one is foreseen; its start */
 enum { MOST_FAILURES = 60, BREATH = 50 }; /* tries of one step; steps between two looks at the world outside */
 
@@ -55,6 +55,13 @@ typedef struct method {
     double node[MOST_STAGES], weight[MOST_STAGES][MOST_STAGES], error[MOST_STAGES];
     double value[PAIRS + 1][2], row[PAIRS + 1][MOST_STAGES][2], column[PAIRS + 1][MOST_STAGES][2];
 } method;
+
+/* How far an integration came: states that are done, the time, counts; and why it ended: REACHED and so on. */
+typedef struct progress {
+    int code, done;
+    long steps, rates, jacobians;
+    double t;
+} progress;
 
 typedef int (*rate_of)(void *data, double t, const double *y, double *rate);
 typedef const double *(*jacobian_of)(void *data, double t, const double *y);
@@ -622,11 +629,11 @@ static int step(radau *r)
         if (!(error < 1.0)) {
             trouble = STANDSTILL;
             doubt = doubt > MIDDLE ? doubt : MIDDLE;
-            change_step(r, (r->last_h > 0.0 ? factor_h : 0.1) * r->h);
+            change_step(r, (r->last_h > 0.0 ? factor_h : fmin(factor_h, fmax(0.1, 0.9 / error))) * r->h); /* at first: as of a layer */;
             continue;
         }
-        if (r->last_h > 0.0) /* what the last two steps foretell */
-            factor_h = fmin(factor_h, fmax(0.2, safety * r->h / r->last_h * pow(error * error / r->last_error, power)));
+        if (r->last_h > 0.0) /* what the last two steps foretell: a motion that calms down lets steps grow all the time */
+            factor_h = fmax(factor_h, fmin(8.0, safety * r->h / r->last_h * pow(error * error / r->last_error, power)));
         if (r->contraction > 0.0)
             factor_h = fmin(factor_h, fmax(1.0, pow(CONTRACTION / r->contraction, 1.0 / CONTRACTION_POWER)));
         if (failures)
@@ -684,8 +691,8 @@ void radau_free(radau *r)
 
 /* An integration about to begin at t with the state y, or NULL if memory does not suffice. constrained [size]: 1 for
  * entries that constraints fix; quadratures: how many of the last entries nothing depends on. */
-radau *radau_new(const method *m, int size, int quadratures, const double *constrained, void *data, rate_of rate,
-                 jacobian_of jacobian, double t, const double *y, double rtol, const double *atol)
+static radau *radau_new(const method *m, int size, int quadratures, const double *constrained, void *data, rate_of rate,
+                        jacobian_of jacobian, double t, const double *y, double rtol, const double *atol)
 {
     radau *r = calloc(1, sizeof *r);
     if (!r)
@@ -761,9 +768,8 @@ static int settle(radau *r)
     return failed;
 }
 
-/* To be called once, before all else: the state at the start, as the constraints have it, into out [size]. Returns a number
- * below zero where there is none. */
-int radau_begin(radau *r, double *out)
+/* The state at the start, as the constraints have it, into out [size]. Returns a number below zero where there is none. */
+static int begin(radau *r, double *out)
 {
     if (!evaluate(r, r->t, r->y, r->slope))
         return NOT_FINITE;
@@ -794,7 +800,7 @@ static void show(radau *r, double t, double *out)
 /* Goes on through `times` [count], never beyond the last of them; states there, between two steps if need be, into the rows
  * of `states` [count][size] from *done on, which is increased. Returns PAUSED before that if many steps were taken, and a
  * number below zero where it cannot go on. */
-int radau_advance(radau *r, const double *times, int count, int *done, double *states)
+static int advance(radau *r, const double *times, int count, double *states, int *done)
 {
     r->end = times[count - 1];
     if (r->h == 0.0)
@@ -813,11 +819,35 @@ int radau_advance(radau *r, const double *times, int count, int *done, double *s
     return REACHED;
 }
 
-/* The time reached; counts: steps tried, rates, Jacobians. */
-double radau_state(const radau *r, long *counts)
+/* Goes on as `radau_start` says. */
+void radau_go(radau *r, const double *times, int count, double *states, progress *p)
 {
-    counts[0] = r->steps;
-    counts[1] = r->rates;
-    counts[2] = r->jacobians;
-    return r->t;
+    p->code = p->done ? REACHED : begin(r, states);
+    if (p->code == REACHED) {
+        p->done += !p->done;
+        p->code = advance(r, times, count, states, &p->done);
+    }
+    p->t = r->t;
+    p->steps = r->steps;
+    p->rates = r->rates;
+    p->jacobians = r->jacobians;
+}
+
+/* Integrates from `start` at times[0] through `times` [count], never beyond the last of them; states there, the first one as the
+ * constraints have it, into `states` [count][size]. Says in p how far it came and why it ended. Where it paused, having taken
+ * many steps, it returns what `radau_go` goes on with and `radau_free` gives back, else NULL. */
+radau *radau_start(const method *m, int size, int quadratures, const double *constrained, void *data, rate_of rate,
+                   jacobian_of jacobian, double rtol, const double *atol, const double *start, const double *times, int count,
+                   double *states, progress *p)
+{
+    radau *r = radau_new(m, size, quadratures, constrained, data, rate, jacobian, times[0], start, rtol, atol);
+    if (!r) {
+        p->code = NO_ROOM;
+        return NULL;
+    }
+    radau_go(r, times, count, states, p);
+    if (p->code == PAUSED)
+        return r;
+    radau_free(r);
+    return NULL;
 }
