@@ -89,13 +89,14 @@ typedef struct radau {
     shifted linear;            /* what is left when they are eliminated */
     number g, *x;              /* the step over the method's eigenvalues; right-hand sides and solutions of their systems */
     number row[MOST_STAGES];   /* the same as in the method: row[s] for all parts, column[k] for all stages */
-    double column[PAIRS + 1][2][MOST_STAGES + 1];
+    strip column[PAIRS + 1][2];
+    strip *gap, *closing, *made; /* of constraints and of what moves, for all stages: see `newton` */
     double *y, *slope, *atol, *scale; /* the state, its rate, tolerances, one over what an error may be */
     double *Z, *last_Z, *F, *change;  /* [stages][size] displacements, now and in the last step; rates; Newton's change */
     double *trial, *error;
     double *asked, *told;                             /* a state and its rate in the order of the problem */
     double *coupling, *answers, *bound;               /* of the Jacobian, see `condense` */
-    double *gap, *closing, *asking, *made;            /* of linear systems, see `newton` and `condense` */
+    double *asking;                                   /* of linear systems, see `condense` */
     double *room;                                     /* to factor in */
 } radau;
 
@@ -357,49 +358,87 @@ static int evaluate_stages(radau *r)
     return 1;
 }
 
-/* y += A x for `rows` of A [columns][apart] and all stages, whose x and y are so far apart. */
-static inline void multiply_stages(const int S, int rows, int columns, int apart, const double *restrict A,
-                                   const double *restrict x, int next_x, double *restrict y, int next_y)
+/* Numbers of all stages, which lie so far apart, as a strip. */
+static inline strip gather(const int S, const double *x, int apart)
 {
-    int j = 0;
-    for (; j + 2 <= columns; j += 2) {
-        const double *restrict a = A + (size_t)j * apart, *restrict b = a + apart;
-        for (int s = 0; s < S; ++s) {
-            const double f = x[s * next_x + j], g = x[s * next_x + j + 1];
-            double *restrict own = y + s * next_y;
-            for (int i = 0; i < rows; ++i)
-                own[i] += f * a[i] + g * b[i];
+    strip all = {0.0};
+    for (int s = 0; s < S; ++s)
+        all[s] = x[s * apart];
+    return all;
+}
+
+static inline void scatter(const int S, strip all, double *x, int apart)
+{
+    for (int s = 0; s < S; ++s)
+        x[s * apart] = all[s];
+}
+
+/* y += A x for all stages, A [columns][apart] of so many rows; four of them at once, since each waits for its last addition. */
+static void add_stages(int rows, int columns, int apart, const double *restrict A, const strip *restrict x, strip *restrict y)
+{
+    int i = 0;
+    for (; i + 4 <= rows; i += 4) {
+        strip a = y[i], b = y[i + 1], c = y[i + 2], d = y[i + 3];
+        for (int j = 0; j < columns; ++j) {
+            const double *f = A + j * apart + i;
+            a += f[0] * x[j];
+            b += f[1] * x[j];
+            c += f[2] * x[j];
+            d += f[3] * x[j];
         }
+        y[i] = a;
+        y[i + 1] = b;
+        y[i + 2] = c;
+        y[i + 3] = d;
     }
-    for (; j < columns; ++j)
-        for (int s = 0; s < S; ++s)
-            subtract(rows, -x[s * next_x + j], A + (size_t)j * apart, y + s * next_y);
+    for (; i < rows; ++i)
+        for (int j = 0; j < columns; ++j)
+            y[i] += A[j * apart + i] * x[j];
+}
+
+/* `solve` for all stages. */
+static void solve_all(int n, const double *restrict A, const int *order, const strip *restrict b, strip *restrict x)
+{
+    for (int i = 0; i < n; ++i)
+        x[i] = b[order[i]];
+    for (int first = 0; first + BLOCK < n; first += BLOCK) {
+        const int next = first + BLOCK;
+        add_stages(n - next, BLOCK, n, A + first * n + next, x + first, x + next);
+    }
+    for (int first = n - BLOCK; first >= 0; first -= BLOCK) {
+        strip y[BLOCK] = {{0.0}};
+        add_stages(BLOCK, BLOCK, n, A + first * n + first, x + first, y);
+        for (int l = 0; l < BLOCK; ++l) {
+            x[first + l] = y[l];
+            y[l] = -y[l];
+        }
+        add_stages(first, BLOCK, n, A + first * n, y, x);
+    }
 }
 
 /* Newton's change of all stages into `change`, from rates F at displacements Z. */
 static inline void newton_of(radau *r, const int S)
 {
-    const int n = r->size, d = r->moving, a = r->fixed, v = r->inner, next = a ? d : n, *order = r->linear.order;
-    const double *restrict F = r->F, *restrict Z = r->Z;
+    const int n = r->size, d = r->moving, a = r->fixed, v = r->inner, *order = r->linear.order;
+    const double *restrict Z = r->Z;
     const number g = r->g;
     double *restrict change = r->change;
+    strip *restrict made = r->made, *restrict closing = r->closing;
     number *restrict x = r->x;
+    for (int i = 0; i < d; ++i)
+        made[i] = gather(S, r->F + i, n);
     if (a) { /* the constraints are solved for: what moves then does so by itself */
-        for (int s = 0; s < S; ++s) {
-            for (int i = 0; i < a; ++i)
-                r->gap[s * v + i] = -F[s * n + d + i];
-            memcpy(r->made + s * d, F + s * n, d * sizeof *r->made);
-        }
-        solve(v, r->bound, r->inner_rows, S, v, r->gap, r->closing);
-        multiply_stages(S, d, a, d, r->coupling, r->closing, v, r->made, d);
-        F = r->made;
+        for (int i = 0; i < a; ++i)
+            r->gap[i] = -gather(S, r->F + d + i, n);
+        solve_all(v, r->bound, r->inner_rows, r->gap, closing);
+        add_stages(d, a, d, r->coupling, closing, made);
     }
     for (int i = 0; i < d; ++i) { /* by parts, each in its lane */
-        const double *own = F + order[i], *at = Z + order[i];
+        const double *restrict own = (const double *)(made + order[i]), *restrict at = Z + order[i];
         number f = {{0.0}, {0.0}}, z = f;
         for (int s = 0; s < S; ++s) {
-            f.re += own[s * next] * r->row[s].re;
-            f.im += own[s * next] * r->row[s].im;
+            f.re += own[s] * r->row[s].re;
+            f.im += own[s] * r->row[s].im;
             z.re += at[s * n] * r->row[s].re;
             z.im += at[s * n] * r->row[s].im;
         }
@@ -408,20 +447,17 @@ static inline void newton_of(radau *r, const int S)
     }
     solve_shifted(&r->linear, x);
     for (int i = 0; i < d; ++i) {
-        double sum[MOST_STAGES + 1] = {0.0};
+        strip sum = {0.0};
         for (int k = 0; k <= S / 2; ++k)
-            for (int s = 0; s <= MOST_STAGES; ++s)
-                sum[s] += r->column[k][0][s] * x[i].re[k] - r->column[k][1][s] * x[i].im[k];
-        for (int s = 0; s < S; ++s)
-            change[s * n + order[i]] = sum[s];
+            sum += x[i].re[k] * r->column[k][0] - x[i].im[k] * r->column[k][1];
+        made[order[i]] = sum;
+        scatter(S, sum, change + order[i], n);
     }
-    for (int s = 0; s < S; ++s) {
-        memcpy(change + s * n + d, r->closing + s * v, a * sizeof *change);
-        for (int i = d + a; i < n; ++i)
-            change[s * n + i] = 0.0;
-    }
-    if (a)
-        multiply_stages(S, a, d, v, r->answers, change, n, change + d, n);
+    add_stages(a, d, v, r->answers, made, closing);
+    for (int i = 0; i < a; ++i)
+        scatter(S, closing[i], change + d + i, n);
+    for (int i = d + a; i < n; ++i)
+        scatter(S, (strip){0.0}, change + i, n);
 }
 
 /* The same by numbers of stages known to the compiler. */
@@ -664,14 +700,17 @@ static size_t lay_out(radau *r, char *room)
     struct { double **array; size_t count; } numbers[] = {
         {&r->y, n}, {&r->slope, n}, {&r->atol, n}, {&r->scale, n}, {&r->trial, n}, {&r->error, n}, {&r->asked, n}, {&r->told, n},
         {&r->Z, S * n}, {&r->last_Z, S * n}, {&r->F, S * n}, {&r->change, S * n},
-        {&r->coupling, d * a}, {&r->answers, v * d}, {&r->asking, v * d}, {&r->bound, v * v},
-        {&r->gap, S * v}, {&r->closing, S * v}, {&r->made, a ? S * d : 0}, {&r->room, v},
+        {&r->coupling, d * a}, {&r->answers, v * (d + 1)}, {&r->asking, v * (d + 1)}, {&r->bound, v * v},
+        {&r->room, v},
         {&s->H, w * d}, {&s->lower, w * d}, {&s->y, w},
     };
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; ++i)
         *numbers[i].array = part_of(room, &used, numbers[i].count * sizeof(double));
+    r->gap = part_of(room, &used, v * sizeof *r->gap);
+    r->closing = part_of(room, &used, v * sizeof *r->closing);
     if (room)
         memset(room, 0, used); /* what pads matrices and right-hand sides */
+    r->made = part_of(room, &used, d * sizeof *r->made);
     r->x = part_of(room, &used, d * sizeof *r->x);
     s->upper = part_of(room, &used, d * (d + 1) / 2 * sizeof *s->upper);
     s->factor = part_of(room, &used, d * sizeof *s->factor);
@@ -761,10 +800,11 @@ static int settle(radau *r)
 {
     const int failed = factor_bound(r, linearise(r, NOW));
     r->of = PAST; /* its other parts change with what is solved for here */
-    memcpy(r->gap, r->slope + r->moving, r->fixed * sizeof *r->gap);
-    solve(r->inner, r->bound, r->inner_rows, 1, r->inner, r->gap, r->closing);
     for (int i = 0; i < r->fixed; ++i)
-        r->y[r->moving + i] -= r->closing[i];
+        r->asking[i] = r->slope[r->moving + i];
+    solve(r->inner, r->bound, r->inner_rows, 1, r->inner, r->asking, r->answers);
+    for (int i = 0; i < r->fixed; ++i)
+        r->y[r->moving + i] -= r->answers[i];
     return failed;
 }
 
