@@ -83,8 +83,7 @@ typedef struct radau {
     int of;                    /* where the Jacobian is from: PAST, MIDDLE or NOW */
     int factored;              /* whether the factors fit it and h */
     void *memory;              /* of all arrays */
-    int *order;                /* of the entries here: first what moves, then what constraints fix, then quadratures */
-    int ordered;               /* whether the problem has them in this order too */
+    int *moves, *fixes;        /* which entries move, and which are fixed by constraints; quadratures are the last ones */
     int inner, *inner_rows;    /* of the matrix of the constraints: its size, padded, see BLOCK; the order in its factors */
     shifted linear;            /* what is left when they are eliminated */
     number g, *x;              /* the step over the method's eigenvalues; right-hand sides and solutions of their systems */
@@ -94,7 +93,6 @@ typedef struct radau {
     double *y, *slope, *atol, *scale; /* the state, its rate, tolerances, one over what an error may be */
     double *Z, *last_Z, *F, *change;  /* [stages][size] displacements, now and in the last step; rates; Newton's change */
     double *trial, *error;
-    double *asked, *told;                             /* a state and its rate in the order of the problem */
     double *coupling, *answers, *bound;               /* of the Jacobian, see `condense` */
     double *asking;                                   /* of linear systems, see `condense` */
     double *room;                                     /* to factor in */
@@ -267,15 +265,17 @@ static const double *linearise(radau *r, int where)
     r->jacobians += 1;
     r->factored = 0;
     r->of = where;
+    if (where == NOW)
+        return r->jacobian(r->data, r->t, r->y);
     for (int i = 0; i < r->size; ++i)
-        r->asked[r->order[i]] = where == NOW ? r->y[i] : r->y[i] + r->Z[middle * r->size + i];
-    return r->jacobian(r->data, where == NOW ? r->t : r->t + r->m.node[middle] * r->h, r->asked);
+        r->trial[i] = r->y[i] + r->Z[middle * r->size + i];
+    return r->jacobian(r->data, r->t + r->m.node[middle] * r->h, r->trial);
 }
 
 /* Factors N, how constraints change with what they fix. Returns 1 if they do not fix it. */
 static int factor_bound(radau *r, const double *J)
 {
-    const int n = r->size, a = r->fixed, v = r->inner, *fixes = r->order + r->moving;
+    const int n = r->size, a = r->fixed, v = r->inner, *fixes = r->fixes;
     if (v > a)
         memset(r->bound, 0, (size_t)v * v * sizeof *r->bound);
     for (int j = 0; j < a; ++j)
@@ -291,7 +291,7 @@ static int factor_bound(radau *r, const double *J)
 static int condense(radau *r, int where)
 {
     const int n = r->size, d = r->moving, a = r->fixed, v = r->inner, w = r->linear.width;
-    const int *moves = r->order, *fixes = r->order + d;
+    const int *moves = r->moves, *fixes = r->fixes;
     const double *J = linearise(r, where);
     double *schur = r->linear.H;
     for (int i = 0; i < d; ++i) {
@@ -325,15 +325,7 @@ static int evaluate(radau *r, double t, const double *y, double *rate)
     const int n = r->size;
     double lane[8] = {0.0}, all = 0.0;
     r->rates += 1;
-    if (r->ordered)
-        r->rate(r->data, t, y, rate);
-    else {
-        for (int i = 0; i < n; ++i)
-            r->asked[r->order[i]] = y[i];
-        r->rate(r->data, t, r->asked, r->told);
-        for (int i = 0; i < n; ++i)
-            rate[i] = r->told[r->order[i]];
-    }
+    r->rate(r->data, t, y, rate);
     int i = 0;
     for (; i + 8 <= n; i += 8)
         for (int k = 0; k < 8; ++k)
@@ -420,21 +412,22 @@ static void solve_all(int n, const double *restrict A, const int *order, const s
 static inline void newton_of(radau *r, const int S)
 {
     const int n = r->size, d = r->moving, a = r->fixed, v = r->inner, *order = r->linear.order;
+    const int *moves = r->moves, *fixes = r->fixes;
     const double *restrict Z = r->Z;
     const number g = r->g;
     double *restrict change = r->change;
     strip *restrict made = r->made, *restrict closing = r->closing;
     number *restrict x = r->x;
     for (int i = 0; i < d; ++i)
-        made[i] = gather(S, r->F + i, n);
+        made[i] = gather(S, r->F + moves[i], n);
     if (a) { /* the constraints are solved for: what moves then does so by itself */
         for (int i = 0; i < a; ++i)
-            r->gap[i] = -gather(S, r->F + d + i, n);
+            r->gap[i] = -gather(S, r->F + fixes[i], n);
         solve_all(v, r->bound, r->inner_rows, r->gap, closing);
         add_stages(d, a, d, r->coupling, closing, made);
     }
     for (int i = 0; i < d; ++i) { /* by parts, each in its lane */
-        const double *restrict own = (const double *)(made + order[i]), *restrict at = Z + order[i];
+        const double *restrict own = (const double *)(made + order[i]), *restrict at = Z + moves[order[i]];
         number f = {{0.0}, {0.0}}, z = f;
         for (int s = 0; s < S; ++s) {
             f.re += own[s] * r->row[s].re;
@@ -451,11 +444,11 @@ static inline void newton_of(radau *r, const int S)
         for (int k = 0; k <= S / 2; ++k)
             sum += x[i].re[k] * r->column[k][0] - x[i].im[k] * r->column[k][1];
         made[order[i]] = sum;
-        scatter(S, sum, change + order[i], n);
+        scatter(S, sum, change + moves[order[i]], n);
     }
     add_stages(a, d, v, r->answers, made, closing);
     for (int i = 0; i < a; ++i)
-        scatter(S, closing[i], change + d + i, n);
+        scatter(S, closing[i], change + fixes[i], n);
     for (int i = d + a; i < n; ++i)
         scatter(S, (strip){0.0}, change + i, n);
 }
@@ -572,11 +565,12 @@ static double error_of(radau *r, const double *rate)
         r->error[i] = sum;
     }
     for (int i = 0; i < d; ++i)
-        r->x[i] = (number){{r->error[r->linear.order[i]]}, {0.0}};
+        r->x[i] = (number){{r->error[r->moves[r->linear.order[i]]]}, {0.0}};
     solve_shifted(&r->linear, r->x); /* of what moves: constraints hold */
     for (int i = 0; i < d; ++i)
-        r->error[r->linear.order[i]] = r->x[i].re[0];
-    memset(r->error + d, 0, a * sizeof *r->error);
+        r->error[r->moves[r->linear.order[i]]] = r->x[i].re[0];
+    for (int i = 0; i < a; ++i)
+        r->error[r->fixes[i]] = 0.0;
     const double total = squares(n, r->error, r->scale);
     return sqrt(total / (d + quadratures));
 }
@@ -698,7 +692,7 @@ static size_t lay_out(radau *r, char *room)
     shifted *s = &r->linear;
     size_t used = 0;
     struct { double **array; size_t count; } numbers[] = {
-        {&r->y, n}, {&r->slope, n}, {&r->atol, n}, {&r->scale, n}, {&r->trial, n}, {&r->error, n}, {&r->asked, n}, {&r->told, n},
+        {&r->y, n}, {&r->slope, n}, {&r->atol, n}, {&r->scale, n}, {&r->trial, n}, {&r->error, n},
         {&r->Z, S * n}, {&r->last_Z, S * n}, {&r->F, S * n}, {&r->change, S * n},
         {&r->coupling, d * a}, {&r->answers, v * (d + 1)}, {&r->asking, v * (d + 1)}, {&r->bound, v * v},
         {&r->room, v},
@@ -717,7 +711,8 @@ static size_t lay_out(radau *r, char *room)
     s->row = part_of(room, &used, d * sizeof *s->row);
     s->exchanged = part_of(room, &used, d * sizeof *s->exchanged);
     s->order = part_of(room, &used, d * sizeof *s->order);
-    r->order = part_of(room, &used, n * sizeof *r->order);
+    r->moves = part_of(room, &used, d * sizeof *r->moves);
+    r->fixes = part_of(room, &used, a * sizeof *r->fixes);
     r->inner_rows = part_of(room, &used, v * sizeof *r->inner_rows);
     return used;
 }
@@ -756,16 +751,10 @@ static radau *radau_new(const method *m, int size, int quadratures, const double
             r->column[k][0][s] = m->column[k][s][0];
             r->column[k][1][s] = m->column[k][s][1];
         }
-    r->ordered = 1;
-    for (int i = 0, moving = 0, fixed = r->moving; i < size; ++i) {
-        const int at = i >= size - quadratures ? i : constrained[i] != 0.0 ? fixed++ : moving++;
-        r->order[at] = i;
-        r->ordered = r->ordered && at == i;
-    }
-    for (int i = 0; i < size; ++i) {
-        r->y[i] = y[r->order[i]];
-        r->atol[i] = atol[r->order[i]];
-    }
+    for (int i = 0, moving = 0, fixed = 0; i < size - quadratures; ++i)
+        *(constrained[i] != 0.0 ? r->fixes + fixed++ : r->moves + moving++) = i;
+    memcpy(r->y, y, size * sizeof *y);
+    memcpy(r->atol, atol, size * sizeof *atol);
     r->data = data;
     r->rate = rate;
     r->jacobian = jacobian;
@@ -780,18 +769,12 @@ static double first_step(const radau *r)
 {
     const double span = r->end - r->t, share = FIRST * pow(r->rtol, 1.0 / (r->m.stages + 1));
     double size = 0.0, speed = 0.0;
-    for (int i = 0; i < r->moving; ++i) {
+    for (int k = 0; k < r->moving; ++k) {
+        const int i = r->moves[k];
         size += r->y[i] * r->y[i] * r->scale[i] * r->scale[i];
         speed += r->slope[i] * r->slope[i] * r->scale[i] * r->scale[i];
     }
     return speed * span * span > 1e-10 * size ? fmin(span, share * sqrt(fmax(size, 1e-10) / speed)) : 1e-3 * span;
-}
-
-/* A state in the order of the problem. */
-static void put(const radau *r, const double *y, double *out)
-{
-    for (int i = 0; i < r->size; ++i)
-        out[r->order[i]] = y[i];
 }
 
 /* Entries that constraints fix, made to fulfil them at the start: a linear system, since each constraint is linear in them.
@@ -801,10 +784,10 @@ static int settle(radau *r)
     const int failed = factor_bound(r, linearise(r, NOW));
     r->of = PAST; /* its other parts change with what is solved for here */
     for (int i = 0; i < r->fixed; ++i)
-        r->asking[i] = r->slope[r->moving + i];
+        r->asking[i] = r->slope[r->fixes[i]];
     solve(r->inner, r->bound, r->inner_rows, 1, r->inner, r->asking, r->answers);
     for (int i = 0; i < r->fixed; ++i)
-        r->y[r->moving + i] -= r->answers[i];
+        r->y[r->fixes[i]] -= r->answers[i];
     return failed;
 }
 
@@ -818,7 +801,7 @@ static int begin(radau *r, double *out)
     if (r->fixed && !evaluate(r, r->t, r->y, r->slope))
         return SINGULAR;
     rescale(r);
-    put(r, r->y, out);
+    memcpy(out, r->y, r->size * sizeof *out);
     return REACHED;
 }
 
@@ -826,15 +809,14 @@ static int begin(radau *r, double *out)
 static void show(radau *r, double t, double *out)
 {
     const int n = r->size, S = r->m.stages;
-    memcpy(r->trial, r->y, n * sizeof *r->trial);
+    memcpy(out, r->y, n * sizeof *out);
     if (r->t > t) {
         double weight[MOST_STAGES];
         interpolate(&r->m, 1.0 + (t - r->t) / r->last_h, weight);
         weight[S - 1] -= 1.0;
         for (int s = 0; s < S; ++s)
-            subtract(n, -weight[s], r->last_Z + s * n, r->trial);
+            subtract(n, -weight[s], r->last_Z + s * n, out);
     }
-    put(r, r->trial, out);
 }
 
 /* Goes on through `times` [count], never beyond the last of them; states there, between two steps if need be, into the rows
