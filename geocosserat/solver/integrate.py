@@ -4,6 +4,7 @@ import warnings
 from collections.abc import Sequence
 from functools import partial
 from importlib import import_module
+from math import isfinite
 
 import numpy as np
 
@@ -49,7 +50,7 @@ def integrate(
     """
     if method not in METHODS:
         raise ValueError(f"expected a method out of {', '.join(METHODS)}, found {method!r}")
-    if not np.isfinite(start).all():
+    if not isfinite(start.dot(start)) and not np.isfinite(start).all():  # the former is quick, but may overflow
         raise ValueError("expected a finite initial state, found infinities or NaN; check the start of the scene")
     tolerance = np.empty(start.shape)
     tolerance[:] = atol

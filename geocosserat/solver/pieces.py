@@ -4,7 +4,7 @@ A step that reaches over a jump of the rate sees only one side of it, and at res
 seen at all. Each smooth piece is therefore integrated by itself.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Sequence
 from functools import partial
 from itertools import pairwise
 
@@ -22,9 +22,11 @@ Piece = Callable[[Array, Array, Progress, Frame], Trajectory]
 
 
 def in_pieces(
-    piece: Piece, start: Array, times: Array, switches: Iterable[float], progress: Progress, frame: Frame
+    piece: Piece, start: Array, times: Array, switches: Sequence[float], progress: Progress, frame: Frame
 ) -> Trajectory:
     """Integrates from times[0] through all of `times`, anew from each of the `switches` between."""
+    if not switches:
+        return piece(start, times, progress, frame)
     first, last = float(times[0]), float(times[-1])
     hair = HAIR * (last - first)
     between = {t for t in switches if first + 2 * hair < t < last - 2 * hair}

@@ -6,19 +6,21 @@
  * quadratures, which nothing depends on; they are integrated by the same formula and cost no linear algebra.
  *
  * Each step solves for the values at all stages by Newton's method, whose matrix falls apart into a real and (s - 1) / 2
- * complex ones of the size of the system. Constraints are eliminated once for a Jacobian, not for every step size. The
- * Jacobian is that of the middle of the step, where the last step leads.
+ * complex ones of the size of the system; shifted.c, which comes before this file, solves with them. Constraints are
+ * eliminated once for a Jacobian, not for every step size. The Jacobian is that of the middle of the step, where the last
+ * step leads.
  *
  * Source: E. Hairer and G. Wanner, Solving Ordinary Differential Equations II (1996), section IV.8; for the embedded
  * formula and the choice of steps too.
  */
 #include <float.h>
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { MOST_STAGES = 7, PAIRS = (MOST_STAGES - 1) / 2 };
-enum { REACHED = 0, PAUSED = 1, STANDSTILL = -1, DIVERGED = -2, NOT_FINITE = -3, SINGULAR = -4 };
+enum { REACHED = 0, PAUSED = 1, STANDSTILL = -1, DIVERGED = -2, NOT_FINITE = -3, SINGULAR = -4, NO_ROOM = -5 };
 enum { PAST, MIDDLE, NOW }; /* a step before this one; where the middle of this one is foreseen; its start */
 enum { MOST_FAILURES = 60, BREATH = 50 }; /* tries of one step; steps between two looks at the world outside */
 
@@ -54,6 +56,13 @@ typedef struct method {
     double value[PAIRS + 1][2], row[PAIRS + 1][MOST_STAGES][2], column[PAIRS + 1][MOST_STAGES][2];
 } method;
 
+/* How far an integration came: states that are done, the time, counts; and why it ended: REACHED and so on. */
+typedef struct progress {
+    int code, done;
+    long steps, rates, jacobians;
+    double t;
+} progress;
+
 typedef int (*rate_of)(void *data, double t, const double *y, double *rate);
 typedef const double *(*jacobian_of)(void *data, double t, const double *y);
 
@@ -73,27 +82,32 @@ typedef struct radau {
     int finite;                /* whether the last rate was */
     int of;                    /* where the Jacobian is from: PAST, MIDDLE or NOW */
     int factored;              /* whether the factors fit it and h */
-    int *order;                /* of the entries here: first what moves, then what constraints fix, then quadratures */
-    int ordered;               /* whether the problem has them in this order too */
-    int width, inner;          /* of the matrices below, and of that of the constraints: padded, see BLOCK */
-    int *inner_rows, *rows[PAIRS + 1]; /* their order in the factors */
-    double *numbers;           /* room for all that follows */
+    void *memory;              /* of all arrays */
+    int *moves, *fixes;        /* which entries move, and which are fixed by constraints; quadratures are the last ones */
+    int inner, *inner_rows;    /* of the matrix of the constraints: its size, padded, see BLOCK; the order in its factors */
+    shifted linear;            /* what is left when they are eliminated */
+    number g, *x;              /* the step over the method's eigenvalues; right-hand sides and solutions of their systems */
+    number row[MOST_STAGES];   /* the same as in the method: row[s] for all parts, column[k] for all stages */
+    strip column[PAIRS + 1][2];
+    strip *gap, *closing, *made; /* of constraints and of what moves, for all stages: see `newton` */
     double *y, *slope, *atol, *scale; /* the state, its rate, tolerances, one over what an error may be */
     double *Z, *last_Z, *F, *change;  /* [stages][size] displacements, now and in the last step; rates; Newton's change */
     double *trial, *error;
-    double *asked, *told;                             /* a state and its rate in the order of the problem */
-    double *schur, *coupling, *answers, *bound; /* of the Jacobian, see `condense` */
-    double *matrix[PAIRS + 1];                  /* factors: a real matrix, then complex ones */
-    double *right, *part, *gap, *closing, *asking, *made; /* of linear systems, see `newton` and `condense` */
-    double *room;                                         /* to factor in */
+    double *coupling, *answers, *bound;               /* of the Jacobian, see `condense` */
+    double *asking;                                   /* of linear systems, see `condense` */
+    double *room;                                     /* to factor in */
 } radau;
 
-/* The step over the method's eigenvalue, re + i im. */
-static void share_of(const radau *r, int k, double *re, double *im)
+/* The step over the method's eigenvalues. */
+static number shares(const radau *r)
 {
-    const double *v = r->m.value[k], size = v[0] * v[0] + v[1] * v[1];
-    *re = r->h * v[0] / size;
-    *im = -r->h * v[1] / size;
+    number g = {{0.0}, {0.0}};
+    for (int k = 0; k <= r->m.stages / 2; ++k) {
+        const double *v = r->m.value[k], size = v[0] * v[0] + v[1] * v[1];
+        g.re[k] = r->h * v[0] / size;
+        g.im[k] = -r->h * v[1] / size;
+    }
+    return g;
 }
 
 /* y -= f x */
@@ -104,7 +118,8 @@ static inline void subtract(int n, double f, const double *restrict x, double *r
 }
 
 
-/* Matrices are stored by columns, and padded by ones on the diagonal to a multiple of BLOCK: no loop has a remainder.
+/* Matrices of constraints are stored by columns, and padded by ones on the diagonal to a multiple of BLOCK: no loop has a
+ * remainder.
  *
  * Factors are those by blocks. With A = [[P, Q], [R, T]], P of the size of a block, the inverse of P takes its place and
  * -R / P that of R; then the same with T - R / P Q. A solution then waits once for a block, not once for a column. Rows
@@ -116,19 +131,19 @@ static int padded(int n)
     return (n + BLOCK - 1) / BLOCK * BLOCK;
 }
 
-/* The row from k on whose entry of a column is to be the pivot, -1 if all are zero or not finite. im: NULL if it is real. */
-static inline int pivot_of(int k, int n, const double *re, const double *im)
+/* The row from k on whose entry of a column is to be the pivot, -1 if all are zero or not finite. */
+static inline int pivot_of(int k, int n, const double *column)
 {
     double lane[BLOCK] = {0.0}, most = 0.0;
     for (int i = k / BLOCK * BLOCK; i < n; i += BLOCK) /* in lanes, since a single one would wait for every comparison */
         for (int l = 0; l < BLOCK; ++l) {
-            const double size = i + l < k ? 0.0 : fabs(re[i + l]) + (im ? fabs(im[i + l]) : 0.0);
+            const double size = i + l < k ? 0.0 : fabs(column[i + l]);
             lane[l] = size > lane[l] ? size : lane[l];
         }
     for (int l = 0; l < BLOCK; ++l)
         most = lane[l] > most ? lane[l] : most;
     for (int i = k; i < n && most > 0.0; ++i)
-        if (fabs(re[i]) + (im ? fabs(im[i]) : 0.0) >= (i == k ? 0.1 : 1.0) * most)
+        if (fabs(column[i]) >= (i == k ? 0.1 : 1.0) * most)
             return i;
     return -1;
 }
@@ -155,21 +170,6 @@ static inline void add_block(int n, int apart, const double *restrict A, const d
         y[i] = y[i] + f * a[i] + g * b[i] + h * c[i] + k * d[i];
 }
 
-/* The same for complex ones: A + i B, x + i u, y + i v. */
-static inline void add_complex_block(int n, int apart, const double *restrict A, const double *restrict B, const double *x,
-                                     const double *u, double *restrict y, double *restrict v)
-{
-    for (int k = 0; k < BLOCK; k += 2) {
-        const double *restrict a = A + k * apart, *restrict b = a + apart;
-        const double *restrict c = B + k * apart, *restrict d = c + apart;
-        const double f = x[k], g = x[k + 1], p = u[k], q = u[k + 1];
-        for (int i = 0; i < n; ++i) {
-            y[i] = y[i] + f * a[i] - p * c[i] + g * b[i] - q * d[i];
-            v[i] = v[i] + f * c[i] + p * a[i] + g * d[i] + q * b[i];
-        }
-    }
-}
-
 /* Factors A [n][n] in place; order [n]: of its rows; own [n]: room. Returns 1 if it is singular. */
 static int factor(int n, double *restrict A, int *order, double *restrict own)
 {
@@ -180,7 +180,7 @@ static int factor(int n, double *restrict A, int *order, double *restrict own)
         double *block = A + first * n + first;
         for (int k = 0; k < BLOCK; ++k) { /* by Gauss and Jordan */
             double *column = block + k * n;
-            const int best = pivot_of(first + k, n, column - first, NULL);
+            const int best = pivot_of(first + k, n, column - first);
             if (best < 0)
                 return 1;
             if (best != first + k)
@@ -228,77 +228,6 @@ static void solve(int n, const double *A, const int *order, int sides, int apart
         }
 }
 
-/* The same for a complex matrix: real parts [n][n], then imaginary ones; own [2 n]. */
-static int factor_complex(int n, double *restrict A, int *order, double *restrict own)
-{
-    double *restrict B = A + n * n, *restrict also = own + n;
-    for (int i = 0; i < n; ++i)
-        order[i] = i;
-    for (int first = 0; first < n; first += BLOCK) {
-        const int rows = n - first, corner = first * n + first;
-        for (int k = 0; k < BLOCK; ++k) {
-            double *re = A + corner + k * n, *im = B + corner + k * n;
-            const int best = pivot_of(first + k, n, re - first, im - first);
-            if (best < 0)
-                return 1;
-            if (best != first + k)
-                exchange_rows(n, 2 * n, A, order, first + k, best);
-            memcpy(own, re, rows * sizeof *own);
-            memcpy(also, im, rows * sizeof *also);
-            const double scale = 1.0 / (own[k] * own[k] + also[k] * also[k]), f = scale * own[k], g = -scale * also[k];
-            own[k] = also[k] = 0.0;
-            for (int j = 0; j < BLOCK; ++j) {
-                double *restrict y = A + corner + j * n, *restrict v = B + corner + j * n;
-                const double x = j == k ? 0.0 : f * y[k] - g * v[k], u = j == k ? 0.0 : f * v[k] + g * y[k];
-                for (int i = 0; i < rows && j != k; ++i) {
-                    y[i] -= x * own[i] - u * also[i];
-                    v[i] -= x * also[i] + u * own[i];
-                }
-                y[k] = x;
-                v[k] = u;
-            }
-            for (int i = 0; i < rows; ++i) {
-                re[i] = g * also[i] - f * own[i];
-                im[i] = -f * also[i] - g * own[i];
-            }
-            re[k] = f;
-            im[k] = g;
-        }
-        for (int j = first + BLOCK; j < n; ++j) {
-            const int at = j * n + first, next = at + BLOCK, below = corner + BLOCK;
-            add_complex_block(rows - BLOCK, n, A + below, B + below, A + at, B + at, A + next, B + next);
-        }
-    }
-    return 0;
-}
-
-/* b and x: real parts [n], then imaginary ones. */
-static void solve_complex(int n, const double *A, const int *order, const double *b, double *x)
-{
-    const double *B = A + n * n;
-    double *u = x + n;
-    for (int i = 0; i < n; ++i) {
-        x[i] = b[order[i]];
-        u[i] = b[n + order[i]];
-    }
-    for (int first = 0; first + BLOCK < n; first += BLOCK) {
-        const int below = first * n + first + BLOCK, next = first + BLOCK;
-        add_complex_block(n - next, n, A + below, B + below, x + first, u + first, x + next, u + next);
-    }
-    for (int first = n - BLOCK; first >= 0; first -= BLOCK) {
-        double y[BLOCK] = {0.0}, v[BLOCK] = {0.0};
-        const int corner = first * n + first;
-        add_complex_block(BLOCK, n, A + corner, B + corner, x + first, u + first, y, v);
-        for (int l = 0; l < BLOCK; ++l) {
-            x[first + l] = y[l];
-            u[first + l] = v[l];
-            y[l] = -y[l];
-            v[l] = -v[l];
-        }
-        add_complex_block(first, n, A + first * n, B + first * n, y, v, x, u);
-    }
-}
-
 /* The sum of squares, in lanes, since a single sum would wait for every addition. */
 static double squares(int n, const double *restrict x, const double *restrict scale)
 {
@@ -336,15 +265,17 @@ static const double *linearise(radau *r, int where)
     r->jacobians += 1;
     r->factored = 0;
     r->of = where;
+    if (where == NOW)
+        return r->jacobian(r->data, r->t, r->y);
     for (int i = 0; i < r->size; ++i)
-        r->asked[r->order[i]] = where == NOW ? r->y[i] : r->y[i] + r->Z[middle * r->size + i];
-    return r->jacobian(r->data, where == NOW ? r->t : r->t + r->m.node[middle] * r->h, r->asked);
+        r->trial[i] = r->y[i] + r->Z[middle * r->size + i];
+    return r->jacobian(r->data, r->t + r->m.node[middle] * r->h, r->trial);
 }
 
 /* Factors N, how constraints change with what they fix. Returns 1 if they do not fix it. */
 static int factor_bound(radau *r, const double *J)
 {
-    const int n = r->size, a = r->fixed, v = r->inner, *fixes = r->order + r->moving;
+    const int n = r->size, a = r->fixed, v = r->inner, *fixes = r->fixes;
     if (v > a)
         memset(r->bound, 0, (size_t)v * v * sizeof *r->bound);
     for (int j = 0; j < a; ++j)
@@ -359,13 +290,14 @@ static int factor_bound(radau *r, const double *J)
  * constraints: answers = -N \ K, schur = M - C N \ K. Returns 1 if they cannot be. */
 static int condense(radau *r, int where)
 {
-    const int n = r->size, d = r->moving, a = r->fixed, v = r->inner;
-    const int *moves = r->order, *fixes = r->order + d;
+    const int n = r->size, d = r->moving, a = r->fixed, v = r->inner, w = r->linear.width;
+    const int *moves = r->moves, *fixes = r->fixes;
     const double *J = linearise(r, where);
+    double *schur = r->linear.H;
     for (int i = 0; i < d; ++i) {
         const double *row = J + (size_t)moves[i] * n;
         for (int j = 0; j < d; ++j)
-            r->schur[j * d + i] = row[moves[j]];
+            schur[j * w + i] = row[moves[j]];
         for (int j = 0; j < a; ++j)
             r->coupling[j * d + i] = row[fixes[j]];
     }
@@ -376,7 +308,8 @@ static int condense(radau *r, int where)
             r->asking[j * v + i] = -J[(size_t)fixes[i] * n + moves[j]];
     solve(v, r->bound, r->inner_rows, d, v, r->asking, r->answers);
     for (int j = 0; j < d && a; ++j)
-        multiply(d, a, r->coupling, r->answers + j * v, r->schur + j * d);
+        multiply(d, a, r->coupling, r->answers + j * v, schur + j * w);
+    reduce(&r->linear);
     return 0;
 }
 
@@ -386,56 +319,13 @@ static int renew(radau *r, int where)
     return !(where == MIDDLE && r->last_h > 0.0 && !condense(r, MIDDLE)) && condense(r, NOW);
 }
 
-/* Factors  1 - g schur  for each g = h / eigenvalue. Returns 1 if one is singular. */
-static int factor_all(radau *r)
-{
-    const int d = r->moving, w = r->width;
-    for (int k = 0; k <= r->m.stages / 2; ++k) {
-        double *A = r->matrix[k], *B = A + w * w, re, im;
-        int *rows = r->rows[k];
-        share_of(r, k, &re, &im);
-        if (w > d)
-            memset(A, 0, (k ? 2 : 1) * (size_t)w * w * sizeof *A);
-        for (int j = 0; j < d; ++j) {
-            for (int i = 0; i < d; ++i)
-                A[j * w + i] = -re * r->schur[j * d + i];
-            for (int i = 0; i < d && k; ++i)
-                B[j * w + i] = -im * r->schur[j * d + i];
-        }
-        for (int i = 0; i < w; ++i)
-            A[i * w + i] += 1.0;
-        if (k ? factor_complex(w, A, rows, r->room) : factor(w, A, rows, r->room))
-            return 1;
-    }
-    return 0;
-}
-
-/* Solves for one part of Newton's change of what moves, from `right` [width] into `part`; if it is complex, imaginary ones
- * follow. */
-static void solve_part(radau *r, int k)
-{
-    const int w = r->width;
-    if (k)
-        solve_complex(w, r->matrix[k], r->rows[k], r->right, r->part);
-    else
-        solve(w, r->matrix[0], r->rows[0], 1, w, r->right, r->part);
-}
-
 /* The rate, and whether all of it is finite. */
 static int evaluate(radau *r, double t, const double *y, double *rate)
 {
     const int n = r->size;
     double lane[8] = {0.0}, all = 0.0;
     r->rates += 1;
-    if (r->ordered)
-        r->rate(r->data, t, y, rate);
-    else {
-        for (int i = 0; i < n; ++i)
-            r->asked[r->order[i]] = y[i];
-        r->rate(r->data, t, r->asked, r->told);
-        for (int i = 0; i < n; ++i)
-            rate[i] = r->told[r->order[i]];
-    }
+    r->rate(r->data, t, y, rate);
     int i = 0;
     for (; i + 8 <= n; i += 8)
         for (int k = 0; k < 8; ++k)
@@ -460,89 +350,107 @@ static int evaluate_stages(radau *r)
     return 1;
 }
 
-/* y += A x for `rows` of A [columns][apart] and all stages, whose x and y are so far apart. */
-static inline void multiply_stages(const int S, int rows, int columns, int apart, const double *restrict A,
-                                   const double *restrict x, int next_x, double *restrict y, int next_y)
+/* Numbers of all stages, which lie so far apart, as a strip. */
+static inline strip gather(const int S, const double *x, int apart)
 {
-    int j = 0;
-    for (; j + 2 <= columns; j += 2) {
-        const double *restrict a = A + (size_t)j * apart, *restrict b = a + apart;
-        for (int s = 0; s < S; ++s) {
-            const double f = x[s * next_x + j], g = x[s * next_x + j + 1];
-            double *restrict own = y + s * next_y;
-            for (int i = 0; i < rows; ++i)
-                own[i] += f * a[i] + g * b[i];
+    strip all = {0.0};
+    for (int s = 0; s < S; ++s)
+        all[s] = x[s * apart];
+    return all;
+}
+
+static inline void scatter(const int S, strip all, double *x, int apart)
+{
+    for (int s = 0; s < S; ++s)
+        x[s * apart] = all[s];
+}
+
+/* y += A x for all stages, A [columns][apart] of so many rows; four of them at once, since each waits for its last addition. */
+static void add_stages(int rows, int columns, int apart, const double *restrict A, const strip *restrict x, strip *restrict y)
+{
+    int i = 0;
+    for (; i + 4 <= rows; i += 4) {
+        strip a = y[i], b = y[i + 1], c = y[i + 2], d = y[i + 3];
+        for (int j = 0; j < columns; ++j) {
+            const double *f = A + j * apart + i;
+            a += f[0] * x[j];
+            b += f[1] * x[j];
+            c += f[2] * x[j];
+            d += f[3] * x[j];
         }
+        y[i] = a;
+        y[i + 1] = b;
+        y[i + 2] = c;
+        y[i + 3] = d;
     }
-    for (; j < columns; ++j)
-        for (int s = 0; s < S; ++s)
-            subtract(rows, -x[s * next_x + j], A + (size_t)j * apart, y + s * next_y);
+    for (; i < rows; ++i)
+        for (int j = 0; j < columns; ++j)
+            y[i] += A[j * apart + i] * x[j];
+}
+
+/* `solve` for all stages. */
+static void solve_all(int n, const double *restrict A, const int *order, const strip *restrict b, strip *restrict x)
+{
+    for (int i = 0; i < n; ++i)
+        x[i] = b[order[i]];
+    for (int first = 0; first + BLOCK < n; first += BLOCK) {
+        const int next = first + BLOCK;
+        add_stages(n - next, BLOCK, n, A + first * n + next, x + first, x + next);
+    }
+    for (int first = n - BLOCK; first >= 0; first -= BLOCK) {
+        strip y[BLOCK] = {{0.0}};
+        add_stages(BLOCK, BLOCK, n, A + first * n + first, x + first, y);
+        for (int l = 0; l < BLOCK; ++l) {
+            x[first + l] = y[l];
+            y[l] = -y[l];
+        }
+        add_stages(first, BLOCK, n, A + first * n, y, x);
+    }
 }
 
 /* Newton's change of all stages into `change`, from rates F at displacements Z. */
 static inline void newton_of(radau *r, const int S)
 {
-    const int n = r->size, d = r->moving, a = r->fixed, w = r->width, v = r->inner, next = a ? d : n;
-    const double *restrict F = r->F, *restrict Z = r->Z;
-    double *restrict right = r->right, *restrict change = r->change;
-    const double *restrict x = r->part;
+    const int n = r->size, d = r->moving, a = r->fixed, v = r->inner, *order = r->linear.order;
+    const int *moves = r->moves, *fixes = r->fixes;
+    const double *restrict Z = r->Z;
+    const number g = r->g;
+    double *restrict change = r->change;
+    strip *restrict made = r->made, *restrict closing = r->closing;
+    number *restrict x = r->x;
+    for (int i = 0; i < d; ++i)
+        made[i] = gather(S, r->F + moves[i], n);
     if (a) { /* the constraints are solved for: what moves then does so by itself */
-        for (int s = 0; s < S; ++s) {
-            for (int i = 0; i < a; ++i)
-                r->gap[s * v + i] = -F[s * n + d + i];
-            memcpy(r->made + s * d, F + s * n, d * sizeof *r->made);
-        }
-        solve(v, r->bound, r->inner_rows, S, v, r->gap, r->closing);
-        multiply_stages(S, d, a, d, r->coupling, r->closing, v, r->made, d);
-        F = r->made;
+        for (int i = 0; i < a; ++i)
+            r->gap[i] = -gather(S, r->F + fixes[i], n);
+        solve_all(v, r->bound, r->inner_rows, r->gap, closing);
+        add_stages(d, a, d, r->coupling, closing, made);
     }
-    for (int k = 0; k <= S / 2; ++k) {
-        double p[MOST_STAGES], q[MOST_STAGES], re, im;
-        share_of(r, k, &re, &im);
+    for (int i = 0; i < d; ++i) { /* by parts, each in its lane */
+        const double *restrict own = (const double *)(made + order[i]), *restrict at = Z + moves[order[i]];
+        number f = {{0.0}, {0.0}}, z = f;
         for (int s = 0; s < S; ++s) {
-            p[s] = r->m.row[k][s][0];
-            q[s] = r->m.row[k][s][1];
+            f.re += own[s] * r->row[s].re;
+            f.im += own[s] * r->row[s].im;
+            z.re += at[s * n] * r->row[s].re;
+            z.im += at[s * n] * r->row[s].im;
         }
-        if (k)
-            for (int i = 0; i < d; ++i) {
-                double f = 0.0, g = 0.0, y = 0.0, z = 0.0;
-                for (int s = 0; s < S; ++s) {
-                    f += p[s] * F[s * next + i];
-                    g += q[s] * F[s * next + i];
-                    y += p[s] * Z[s * n + i];
-                    z += q[s] * Z[s * n + i];
-                }
-                right[i] = re * f - im * g - y;
-                right[w + i] = re * g + im * f - z;
-            }
-        else
-            for (int i = 0; i < d; ++i) {
-                double f = 0.0, y = 0.0;
-                for (int s = 0; s < S; ++s) {
-                    f += p[s] * F[s * next + i];
-                    y += p[s] * Z[s * n + i];
-                }
-                right[i] = re * f - y;
-            }
-        solve_part(r, k);
-        for (int s = 0; s < S; ++s) {
-            double *restrict own = change + s * n;
-            const double f = r->m.column[k][s][0], g = r->m.column[k][s][1];
-            if (k)
-                for (int i = 0; i < d; ++i)
-                    own[i] += f * x[i] - g * x[w + i];
-            else
-                for (int i = 0; i < d; ++i)
-                    own[i] = f * x[i];
-        }
+        f = times(g, f);
+        x[i] = (number){f.re - z.re, f.im - z.im};
     }
-    for (int s = 0; s < S; ++s) {
-        memcpy(change + s * n + d, r->closing + s * v, a * sizeof *change);
-        for (int i = d + a; i < n; ++i)
-            change[s * n + i] = 0.0;
+    solve_shifted(&r->linear, x);
+    for (int i = 0; i < d; ++i) {
+        strip sum = {0.0};
+        for (int k = 0; k <= S / 2; ++k)
+            sum += x[i].re[k] * r->column[k][0] - x[i].im[k] * r->column[k][1];
+        made[order[i]] = sum;
+        scatter(S, sum, change + moves[order[i]], n);
     }
-    if (a)
-        multiply_stages(S, a, d, v, r->answers, change, n, change + d, n);
+    add_stages(a, d, v, r->answers, made, closing);
+    for (int i = 0; i < a; ++i)
+        scatter(S, closing[i], change + fixes[i], n);
+    for (int i = d + a; i < n; ++i)
+        scatter(S, (strip){0.0}, change + i, n);
 }
 
 /* The same by numbers of stages known to the compiler. */
@@ -656,10 +564,13 @@ static double error_of(radau *r, const double *rate)
             sum += r->m.error[s] * r->Z[s * n + i];
         r->error[i] = sum;
     }
-    memcpy(r->right, r->error, d * sizeof *r->right);
-    solve_part(r, 0); /* of what moves: constraints hold */
-    memcpy(r->error, r->part, d * sizeof *r->error);
-    memset(r->error + d, 0, a * sizeof *r->error);
+    for (int i = 0; i < d; ++i)
+        r->x[i] = (number){{r->error[r->moves[r->linear.order[i]]]}, {0.0}};
+    solve_shifted(&r->linear, r->x); /* of what moves: constraints hold */
+    for (int i = 0; i < d; ++i)
+        r->error[r->moves[r->linear.order[i]]] = r->x[i].re[0];
+    for (int i = 0; i < a; ++i)
+        r->error[r->fixes[i]] = 0.0;
     const double total = squares(n, r->error, r->scale);
     return sqrt(total / (d + quadratures));
 }
@@ -726,7 +637,8 @@ static int step(radau *r)
         predict(r);
         if (doubt > r->of && renew(r, doubt))
             return SINGULAR;
-        if (!r->factored && factor_all(r)) {
+        r->g = shares(r);
+        if (!r->factored && shift(&r->linear, r->g)) {
             doubt = NOW; /* what was foreseen may be far off */
             change_step(r, 0.5 * r->h);
             continue;
@@ -747,11 +659,11 @@ static int step(radau *r)
         if (!(error < 1.0)) {
             trouble = STANDSTILL;
             doubt = doubt > MIDDLE ? doubt : MIDDLE;
-            change_step(r, (r->last_h > 0.0 ? factor_h : 0.1) * r->h);
+            change_step(r, (r->last_h > 0.0 ? factor_h : fmin(factor_h, fmax(0.1, 0.9 / error))) * r->h); /* at first: as of a layer */;
             continue;
         }
-        if (r->last_h > 0.0) /* what the last two steps foretell */
-            factor_h = fmin(factor_h, fmax(0.2, safety * r->h / r->last_h * pow(error * error / r->last_error, power)));
+        if (r->last_h > 0.0) /* what the last two steps foretell: a motion that calms down lets steps grow all the time */
+            factor_h = fmax(factor_h, fmin(8.0, safety * r->h / r->last_h * pow(error * error / r->last_error, power)));
         if (r->contraction > 0.0)
             factor_h = fmin(factor_h, fmax(1.0, pow(CONTRACTION / r->contraction, 1.0 / CONTRACTION_POWER)));
         if (failures)
@@ -765,43 +677,57 @@ static int step(radau *r)
     return trouble;
 }
 
-/* Room for the arrays of an integration. Returns 1 if there is none. */
-static int make_room(radau *r)
+/* So many bytes of a room, in whole cache lines; NULL where they are only counted. */
+static void *part_of(char *room, size_t *used, size_t bytes)
 {
-    const size_t n = r->size, d = r->moving, a = r->fixed, S = r->m.stages, w = r->width, v = r->inner;
-    const size_t of_pair[PAIRS] = {2 * w * w, S > 3 ? 2 * w * w : 0, S > 5 ? 2 * w * w : 0};
-    struct { double **array; size_t count; } rooms[] = {
-        {&r->y, n}, {&r->slope, n}, {&r->atol, n}, {&r->scale, n}, {&r->trial, n}, {&r->error, n}, {&r->asked, n}, {&r->told, n},
+    void *part = room ? room + *used : NULL;
+    *used += (bytes + 63) / 64 * 64;
+    return part;
+}
+
+/* Lays the arrays of an integration out in a room, or counts its bytes. */
+static size_t lay_out(radau *r, char *room)
+{
+    const size_t n = r->size, d = r->moving, a = r->fixed, S = r->m.stages, v = r->inner, w = r->linear.width;
+    shifted *s = &r->linear;
+    size_t used = 0;
+    struct { double **array; size_t count; } numbers[] = {
+        {&r->y, n}, {&r->slope, n}, {&r->atol, n}, {&r->scale, n}, {&r->trial, n}, {&r->error, n},
         {&r->Z, S * n}, {&r->last_Z, S * n}, {&r->F, S * n}, {&r->change, S * n},
-        {&r->schur, d * d}, {&r->coupling, d * a}, {&r->answers, v * d}, {&r->asking, v * d}, {&r->bound, v * v},
-        {&r->right, 2 * w}, {&r->part, 2 * w}, {&r->gap, S * v}, {&r->closing, S * v}, {&r->made, a ? S * d : 0},
-        {&r->room, 2 * (w > v ? w : v)},
-        {&r->matrix[0], w * w}, {&r->matrix[1], of_pair[0]}, {&r->matrix[2], of_pair[1]}, {&r->matrix[3], of_pair[2]},
+        {&r->coupling, d * a}, {&r->answers, v * (d + 1)}, {&r->asking, v * (d + 1)}, {&r->bound, v * v},
+        {&r->room, v},
+        {&s->H, w * d}, {&s->lower, w * d}, {&s->y, w},
     };
-    size_t total = 0;
-    for (size_t i = 0; i < sizeof rooms / sizeof *rooms; ++i)
-        total += rooms[i].count;
-    double *numbers = r->numbers = calloc(total, sizeof *numbers);
-    for (size_t i = 0; numbers && i < sizeof rooms / sizeof *rooms; ++i) {
-        *rooms[i].array = numbers;
-        numbers += rooms[i].count;
-    }
-    return !r->numbers;
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; ++i)
+        *numbers[i].array = part_of(room, &used, numbers[i].count * sizeof(double));
+    r->gap = part_of(room, &used, v * sizeof *r->gap);
+    r->closing = part_of(room, &used, v * sizeof *r->closing);
+    if (room)
+        memset(room, 0, used); /* what pads matrices and right-hand sides */
+    r->made = part_of(room, &used, d * sizeof *r->made);
+    r->x = part_of(room, &used, d * sizeof *r->x);
+    s->upper = part_of(room, &used, d * (d + 1) / 2 * sizeof *s->upper);
+    s->factor = part_of(room, &used, d * sizeof *s->factor);
+    s->row = part_of(room, &used, d * sizeof *s->row);
+    s->exchanged = part_of(room, &used, d * sizeof *s->exchanged);
+    s->order = part_of(room, &used, d * sizeof *s->order);
+    r->moves = part_of(room, &used, d * sizeof *r->moves);
+    r->fixes = part_of(room, &used, a * sizeof *r->fixes);
+    r->inner_rows = part_of(room, &used, v * sizeof *r->inner_rows);
+    return used;
 }
 
 void radau_free(radau *r)
 {
-    free(r->order);
-    free(r->numbers);
+    free(r->memory);
     free(r);
 }
 
 /* An integration about to begin at t with the state y, or NULL if memory does not suffice. constrained [size]: 1 for
  * entries that constraints fix; quadratures: how many of the last entries nothing depends on. */
-radau *radau_new(const method *m, int size, int quadratures, const double *constrained, void *data, rate_of rate,
-                 jacobian_of jacobian, double t, const double *y, double rtol, const double *atol)
+static radau *radau_new(const method *m, int size, int quadratures, const double *constrained, void *data, rate_of rate,
+                        jacobian_of jacobian, double t, const double *y, double rtol, const double *atol)
 {
-    const size_t n = size;
     radau *r = calloc(1, sizeof *r);
     if (!r)
         return NULL;
@@ -809,27 +735,26 @@ radau *radau_new(const method *m, int size, int quadratures, const double *const
     r->size = size;
     for (int i = 0; i < size - quadratures; ++i)
         r->fixed += constrained[i] != 0.0;
-    r->moving = size - quadratures - r->fixed;
-    r->width = padded(r->moving);
+    r->moving = r->linear.size = size - quadratures - r->fixed;
+    r->linear.width = padded_rows(r->moving);
     r->inner = padded(r->fixed);
-    int *counts = r->order = calloc(n + r->inner + (PAIRS + 1) * r->width, sizeof *counts);
-    if (make_room(r) || !counts) {
+    r->memory = malloc(lay_out(r, NULL) + 63);
+    if (!r->memory) {
         radau_free(r);
         return NULL;
     }
-    r->inner_rows = counts + n;
-    for (int k = 0; k <= PAIRS; ++k)
-        r->rows[k] = r->inner_rows + r->inner + k * r->width;
-    r->ordered = 1;
-    for (int i = 0, moving = 0, fixed = r->moving; i < size; ++i) {
-        const int at = i >= size - quadratures ? i : constrained[i] != 0.0 ? fixed++ : moving++;
-        r->order[at] = i;
-        r->ordered = r->ordered && at == i;
-    }
-    for (int i = 0; i < size; ++i) {
-        r->y[i] = y[r->order[i]];
-        r->atol[i] = atol[r->order[i]];
-    }
+    lay_out(r, (char *)r->memory + 63 - ((uintptr_t)r->memory + 63) % 64);
+    for (int k = 0; k <= m->stages / 2; ++k)
+        for (int s = 0; s < m->stages; ++s) {
+            r->row[s].re[k] = m->row[k][s][0];
+            r->row[s].im[k] = m->row[k][s][1];
+            r->column[k][0][s] = m->column[k][s][0];
+            r->column[k][1][s] = m->column[k][s][1];
+        }
+    for (int i = 0, moving = 0, fixed = 0; i < size - quadratures; ++i)
+        *(constrained[i] != 0.0 ? r->fixes + fixed++ : r->moves + moving++) = i;
+    memcpy(r->y, y, size * sizeof *y);
+    memcpy(r->atol, atol, size * sizeof *atol);
     r->data = data;
     r->rate = rate;
     r->jacobian = jacobian;
@@ -844,18 +769,12 @@ static double first_step(const radau *r)
 {
     const double span = r->end - r->t, share = FIRST * pow(r->rtol, 1.0 / (r->m.stages + 1));
     double size = 0.0, speed = 0.0;
-    for (int i = 0; i < r->moving; ++i) {
+    for (int k = 0; k < r->moving; ++k) {
+        const int i = r->moves[k];
         size += r->y[i] * r->y[i] * r->scale[i] * r->scale[i];
         speed += r->slope[i] * r->slope[i] * r->scale[i] * r->scale[i];
     }
     return speed * span * span > 1e-10 * size ? fmin(span, share * sqrt(fmax(size, 1e-10) / speed)) : 1e-3 * span;
-}
-
-/* A state in the order of the problem. */
-static void put(const radau *r, const double *y, double *out)
-{
-    for (int i = 0; i < r->size; ++i)
-        out[r->order[i]] = y[i];
 }
 
 /* Entries that constraints fix, made to fulfil them at the start: a linear system, since each constraint is linear in them.
@@ -864,16 +783,16 @@ static int settle(radau *r)
 {
     const int failed = factor_bound(r, linearise(r, NOW));
     r->of = PAST; /* its other parts change with what is solved for here */
-    memcpy(r->gap, r->slope + r->moving, r->fixed * sizeof *r->gap);
-    solve(r->inner, r->bound, r->inner_rows, 1, r->inner, r->gap, r->closing);
     for (int i = 0; i < r->fixed; ++i)
-        r->y[r->moving + i] -= r->closing[i];
+        r->asking[i] = r->slope[r->fixes[i]];
+    solve(r->inner, r->bound, r->inner_rows, 1, r->inner, r->asking, r->answers);
+    for (int i = 0; i < r->fixed; ++i)
+        r->y[r->fixes[i]] -= r->answers[i];
     return failed;
 }
 
-/* To be called once, before all else: the state at the start, as the constraints have it, into out [size]. Returns a number
- * below zero where there is none. */
-int radau_begin(radau *r, double *out)
+/* The state at the start, as the constraints have it, into out [size]. Returns a number below zero where there is none. */
+static int begin(radau *r, double *out)
 {
     if (!evaluate(r, r->t, r->y, r->slope))
         return NOT_FINITE;
@@ -882,7 +801,7 @@ int radau_begin(radau *r, double *out)
     if (r->fixed && !evaluate(r, r->t, r->y, r->slope))
         return SINGULAR;
     rescale(r);
-    put(r, r->y, out);
+    memcpy(out, r->y, r->size * sizeof *out);
     return REACHED;
 }
 
@@ -890,21 +809,20 @@ int radau_begin(radau *r, double *out)
 static void show(radau *r, double t, double *out)
 {
     const int n = r->size, S = r->m.stages;
-    memcpy(r->trial, r->y, n * sizeof *r->trial);
+    memcpy(out, r->y, n * sizeof *out);
     if (r->t > t) {
         double weight[MOST_STAGES];
         interpolate(&r->m, 1.0 + (t - r->t) / r->last_h, weight);
         weight[S - 1] -= 1.0;
         for (int s = 0; s < S; ++s)
-            subtract(n, -weight[s], r->last_Z + s * n, r->trial);
+            subtract(n, -weight[s], r->last_Z + s * n, out);
     }
-    put(r, r->trial, out);
 }
 
 /* Goes on through `times` [count], never beyond the last of them; states there, between two steps if need be, into the rows
  * of `states` [count][size] from *done on, which is increased. Returns PAUSED before that if many steps were taken, and a
  * number below zero where it cannot go on. */
-int radau_advance(radau *r, const double *times, int count, int *done, double *states)
+static int advance(radau *r, const double *times, int count, double *states, int *done)
 {
     r->end = times[count - 1];
     if (r->h == 0.0)
@@ -923,11 +841,35 @@ int radau_advance(radau *r, const double *times, int count, int *done, double *s
     return REACHED;
 }
 
-/* The time reached; counts: steps tried, rates, Jacobians. */
-double radau_state(const radau *r, long *counts)
+/* Goes on as `radau_start` says. */
+void radau_go(radau *r, const double *times, int count, double *states, progress *p)
 {
-    counts[0] = r->steps;
-    counts[1] = r->rates;
-    counts[2] = r->jacobians;
-    return r->t;
+    p->code = p->done ? REACHED : begin(r, states);
+    if (p->code == REACHED) {
+        p->done += !p->done;
+        p->code = advance(r, times, count, states, &p->done);
+    }
+    p->t = r->t;
+    p->steps = r->steps;
+    p->rates = r->rates;
+    p->jacobians = r->jacobians;
+}
+
+/* Integrates from `start` at times[0] through `times` [count], never beyond the last of them; states there, the first one as the
+ * constraints have it, into `states` [count][size]. Says in p how far it came and why it ended. Where it paused, having taken
+ * many steps, it returns what `radau_go` goes on with and `radau_free` gives back, else NULL. */
+radau *radau_start(const method *m, int size, int quadratures, const double *constrained, void *data, rate_of rate,
+                   jacobian_of jacobian, double rtol, const double *atol, const double *start, const double *times, int count,
+                   double *states, progress *p)
+{
+    radau *r = radau_new(m, size, quadratures, constrained, data, rate, jacobian, times[0], start, rtol, atol);
+    if (!r) {
+        p->code = NO_ROOM;
+        return NULL;
+    }
+    radau_go(r, times, count, states, p);
+    if (p->code == PAUSED)
+        return r;
+    radau_free(r);
+    return NULL;
 }

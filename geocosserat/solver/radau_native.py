@@ -37,15 +37,19 @@ METHOD = np.dtype(
 """`struct method` of radau.c."""
 
 DECLARATIONS = """
+typedef struct progress {
+    int code, done;
+    long steps, rates, jacobians;
+    double t;
+} progress;
 /* Pointers that are known as numbers are passed as such. */
-void *radau_new(const void *method, int size, int quadratures, const double *constrained, uintptr_t data,
-                uintptr_t rate, uintptr_t jacobian, double t, const double *y, double rtol, const double *atol);
-int radau_begin(void *memory, double *out);
+void *radau_start(const void *method, int size, int quadratures, const double *constrained, uintptr_t data,
+                  uintptr_t rate, uintptr_t jacobian, double rtol, const double *atol, const double *start,
+                  const double *times, int count, double *states, progress *p);
+void radau_go(void *memory, const double *times, int count, double *states, progress *p);
 void radau_free(void *memory);
-int radau_advance(void *memory, const double *times, int count, int *done, double *states);
-double radau_state(const void *memory, long *counts);
 """
-PAUSED = 1
+PAUSED, NO_ROOM = 1, -5
 REASONS = {
     -1: f"the error test failed however small the step; {SINGULAR}",
     -2: f"Newton's method failed however small the step; {SINGULAR}",
@@ -106,7 +110,7 @@ def _library() -> tuple[cffi.FFI, Any, Any]:
     """The interface, the library, and the type by which C takes arrays."""
     ffi = cffi.FFI()
     ffi.cdef(DECLARATIONS)
-    source = Path(__file__).with_name("radau.c").read_text()
+    source = "".join(Path(__file__).with_name(name).read_text() for name in ("shifted.c", "radau.c"))
     return ffi, opened(lambda path: ffi.dlopen(str(path)), source), ffi.typeof("double[]")
 
 
@@ -124,40 +128,45 @@ def radau_native(
     It begins where the constraints hold: the start needs no value for what they fix.
     """
     ffi, lib, numbers = _library()
+    at = ffi.from_buffer
     functions = cast(NativeKernel, kernel).functions()
-    first, last, count = float(times[0]), float(times[-1]), len(times)
-    states = np.empty((count, kernel.size))
-    states[0] = start
-    rows, instants = ffi.from_buffer(numbers, states), ffi.from_buffer(numbers, np.ascontiguousarray(times))
-    memory = lib.radau_new(_method_at(stages_for(rtol)), kernel.size, functions.quadratures,
-                           ffi.from_buffer(numbers, np.ascontiguousarray(kernel.algebraic)), functions.data,
-                           functions.rate, functions.jacobian, first, rows, max(rtol, LEAST_RTOL),
-                           ffi.from_buffer(numbers, atol))  # fmt: skip
-    if memory == ffi.NULL:
-        raise MemoryError(f"no room for dense matrices of {kernel.size} unknowns")
-    reason, counts, reached, hope = "", ffi.new("long[3]"), ffi.new("int *", 1), Hope(SOON, FAR)
+    count, size = len(times), kernel.size
+    states = np.empty((count, size))
+    place = at(numbers, np.ascontiguousarray(times)), count, at(numbers, states), ffi.new("progress *")
+    now = place[3]
+    memory = lib.radau_start(_method_at(stages_for(rtol)), size, functions.quadratures, at(numbers, kernel.algebraic),
+                             functions.data, functions.rate, functions.jacobian, max(rtol, LEAST_RTOL),
+                             at(numbers, atol), at(numbers, np.ascontiguousarray(start)), *place)  # fmt: skip
+    if now.code in AT_START and not now.done:
+        return Trajectory(times[:1].copy(), start[None].copy(), 1, 0, 0, False, AT_START[now.code])
+    if now.code == NO_ROOM:
+        raise MemoryError(f"no room for dense matrices of {size} unknowns")
     try:
-        code = lib.radau_begin(memory, rows)
-        if code < 0:
-            states[0] = start
-            return Trajectory(times[:1].copy(), states[:1], 1, 0, 0, False, AT_START[code])
-        done, paused = 1, False
-        while done < count and not reason:
-            code = lib.radau_advance(memory, instants, count, reached, rows)
-            now = lib.radau_state(memory, counts)
-            while done < reached[0] and not paused:
-                progress((float(times[done]) - first) / (last - first), counts[0])
-                paused = frame(done, states[done], counts[0])
-                done += 1
-            if paused:  # what came after that instant is left out
-                break
-            if code == PAUSED:
-                fraction = (now - first) / (last - first)
-                if hope.lost(counts[0], fraction):
-                    reason = f"Radau stopped at t = {now:.6g}: {counts[0]} steps did not reach the end; {SINGULAR}"
-                progress(fraction, counts[0])
-            elif code < 0:
-                reason = f"Radau stopped at t = {now:.6g} after {counts[0]} steps: {REASONS[code]}"
+        done, reason = _through(lib, memory, place, times, states, progress, frame)
     finally:
-        lib.radau_free(memory)
-    return Trajectory(times[:done].copy(), states[:done], counts[1], counts[2], counts[0], done == count, reason)
+        if memory != ffi.NULL:
+            lib.radau_free(memory)
+    return Trajectory(times[:done].copy(), states[:done], now.rates, now.jacobians, now.steps, done == count, reason)
+
+
+def _through(
+    lib: Any, memory: Any, place: tuple[Any, ...], times: Array, states: Array, progress: Progress, frame: Frame
+) -> tuple[int, str]:
+    """Goes on until the end, or a frame that wants a pause, telling what is reached. Returns how many states there are,
+    without those after a pause, and why it stopped before; empty if it did not."""
+    now, first, last, done, hope = place[3], float(times[0]), float(times[-1]), 1, None
+    while True:
+        while done < now.done:
+            progress((float(times[done]) - first) / (last - first), now.steps)
+            done += 1
+            if frame(done - 1, states[done - 1], now.steps):
+                return done, ""
+        if now.code < 0:
+            return done, f"Radau stopped at t = {now.t:.6g} after {now.steps} steps: {REASONS[now.code]}"
+        if now.code != PAUSED:
+            return done, ""
+        fraction, hope = (now.t - first) / (last - first), hope or Hope(SOON, FAR)
+        if hope.lost(now.steps, fraction):
+            return done, f"Radau stopped at t = {now.t:.6g}: {now.steps} steps did not reach the end; {SINGULAR}"
+        progress(fraction, now.steps)
+        lib.radau_go(memory, *place)
