@@ -5,9 +5,11 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
+from geocosserat.conductor.rescue import SAFE, FellBack, rescued
 from geocosserat.discretisation.mesh import Array
 from geocosserat.discretisation.sampling import stiffnesses
 from geocosserat.discretisation.semidiscrete import SemiDiscrete, discretise
@@ -45,7 +47,8 @@ class Clock:
 
 @dataclass(frozen=True, eq=False)
 class Attempt:
-    """One simulation at one setting; seconds: of the integration alone."""
+    """One simulation at one setting; seconds: of the integration alone; fell_back: if its method failed and the safe one
+    went on."""
 
     setting: Setting
     rod: SemiDiscrete
@@ -53,6 +56,7 @@ class Attempt:
     trajectory: Trajectory
     text: KernelText
     seconds: float
+    fell_back: FellBack | None = None
 
 
 class _OutOfTime(Exception):
@@ -61,7 +65,7 @@ class _OutOfTime(Exception):
 
 class Simulator:
     """Simulates a scene on a backend at any setting; the clock says what for. seconds: after which an integration is
-    cut off."""
+    cut off; rescue: whether the safe method takes over where another one fails that the scene did not ask for."""
 
     def __init__(
         self,
@@ -70,9 +74,10 @@ class Simulator:
         kernel_text: Callable[[RodStructure], KernelText],
         clock: Clock,
         seconds: float = math.inf,
+        rescue: bool = True,
     ) -> None:
         self.scene, self.backend, self.kernel_text, self.clock = scene, backend, kernel_text, clock
-        self.seconds = seconds
+        self.seconds, self.rescue = seconds, rescue and scene.run.method is None
         self.instants = instants(scene)
         self._last: tuple[tuple[int, int], SemiDiscrete, NativeRod | NumpyRod, KernelText] | None = None
 
@@ -91,22 +96,26 @@ class Simulator:
         _check_room(frames, len(rod.state))
         atol = tolerances(rod, setting.rtol, scene.run.atol, unit_of_energy(scene, rod, kernel))
         done = begin(rod.state)
-        start = time.perf_counter()
+        start, fell_back = time.perf_counter(), None
         with progress(scene.title) as report:
             if len(done) == len(times):  # it was complete when another one was interrupted
                 trajectory = Trajectory(times, done, 0, 0, 0, True)
             else:
                 to_come, told = times[len(done) - 1 :], _no_longer(self.seconds, report)
+
+                def integrated(method: str, begun: Array, wanted: Array) -> Trajectory:
+                    return integrate(kernel, begun, wanted, method, setting.rtol, atol, told, frame, self.instants)
+
                 try:
-                    rest = integrate(
-                        kernel, done[-1], to_come, setting.method, setting.rtol, atol, told, frame, self.instants
-                    )
+                    rest = integrated(setting.method, done[-1], to_come)
+                    if self.rescue and not rest.reached:
+                        rest, fell_back = rescued(rest, setting.method, to_come, partial(integrated, SAFE))
                 except _OutOfTime:
                     why = f"cut off after {self.seconds:.3g} seconds"
                     rest = Trajectory(to_come[:1], done[-1:], 0, 0, 0, False, why)
                 states = np.concatenate([done[:-1], rest.states])
                 trajectory = replace(rest, times=times[: len(states)], states=states)
-        return Attempt(setting, rod, kernel, trajectory, text, time.perf_counter() - start)
+        return Attempt(setting, rod, kernel, trajectory, text, time.perf_counter() - start, fell_back)
 
     def _on(self, elements: int, degree: int) -> tuple[SemiDiscrete, NativeRod | NumpyRod, KernelText]:
         """The rod on a mesh, its kernel, and that kernel's text; kept until another mesh is wanted."""

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     import xarray
 
 FORMAT = "geocosserat solution 3"
-_OBJECTS = ("evaluations", "seconds", "contents", "provenance", "plan")
+_OBJECTS = ("evaluations", "seconds", "contents", "provenance", "plan", "fell_back")
 _INTEGERS = ("elements", "degree", "unknowns", "reached")
 _NUMBERS = ("length", "requested", "estimated")
 
@@ -66,7 +66,7 @@ def load(path: str | os.PathLike[str]) -> Solution:
             raise FileError(path, f"the format {FORMAT!r}", repr(attributes.get("format")),
                             "read it with the version that wrote it, named in its attribute `provenance`")
         values: dict[str, Any] = {name: variable[...] for name, variable in file.variables.items()}
-    values |= {name: json.loads(attributes[name]) for name in _OBJECTS}
+    values |= {name: json.loads(attributes.get(name, "null")) for name in _OBJECTS}
     values |= {name: attributes[name] for name in (*TEXTS, *_INTEGERS)}
     values |= {name: attributes.get(name) for name in _NUMBERS}
     recovered: dict[str, Any] = {field.name: values.get(field.name) for field in fields(Solution)}
