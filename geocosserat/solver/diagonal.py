@@ -15,6 +15,7 @@ formula, L. Pareschi and G. Russo, J. Sci. Comput. 25 (2005) 129; of damping, P.
 Problems" (2004), section 3.3.
 """
 
+from contextlib import suppress
 from functools import partial
 
 import numpy as np
@@ -116,13 +117,14 @@ class Stepper:
         return self._simplified(t, base, share, Y)
 
     def _damped(self, t: float, base: Array, share: float, Y: Array) -> Array:
-        """The same by a Jacobian for each round, and as much of each change as makes the next one smaller."""
+        """The same by a new Jacobian wherever the last one leads nowhere, and then as much of its change as makes the next
+        one smaller."""
         for _ in range(ROUNDS):
             self.linearise(t, Y)
+            with suppress(Diverged):
+                return self._simplified(t, base, share, Y)
             change = self._change(t, base, share, Y)
             now, part = self._size(change), 1.0
-            if now <= QUICK:
-                return self._simplified(t, base, share, Y)
             while not self._size(self._change(t, base, share, Y + part * change)) <= (1.0 - 0.25 * part) * now:
                 part *= 0.5
                 if part < LEAST:
@@ -161,7 +163,8 @@ class Stepper:
         base = y + rest * slope
         second = self._stage(self.t + h - share, base, share, first + rest * slope)
         other = (second - base) / share * moves
-        end, self.bend = y + 0.5 * h * (slope + other), h * (other - slope)
+        end: Array = y + 0.5 * h * (slope + other)
+        self.bend = h * (other - slope)
         if self.constrained:
             end[~moves] = second[~moves]
             try:
