@@ -35,7 +35,6 @@ def rescued(
     counts = {name: getattr(failed, name) + getattr(rest, name) for name in ("rates", "jacobians", "steps")}
     if len(rest.times) == 1 and not rest.reached:
         return replace(failed, reason=f"{failed.reason}; {rest.reason}", **counts), None
-    whole = replace(
-        rest, times=times[: good - 1 + len(rest.times)], states=np.concatenate([failed.states[:-1], rest.states]), **counts
-    )
+    states = np.concatenate([failed.states[:-1], rest.states])
+    whole = replace(rest, times=times[: len(states)], states=states, **counts)
     return whole, FellBack(method, float(failed.times[-1]), failed.reason)

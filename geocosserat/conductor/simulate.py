@@ -47,8 +47,8 @@ class Clock:
 
 @dataclass(frozen=True, eq=False)
 class Attempt:
-    """One simulation at one setting; seconds: of the integration alone; fell_back: if its method failed and the safe one
-    went on."""
+    """One simulation at one setting; seconds: of the integration alone; fell_back: if its method failed and the safe
+    one went on."""
 
     setting: Setting
     rod: SemiDiscrete

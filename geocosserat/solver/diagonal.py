@@ -1,8 +1,8 @@
 """Diagonally implicit Runge-Kutta with two stages: slow, and hard to bring down.
 
-The formulas with weights 1/2, 1/2 and the matrix [[g, 0], [1 - 2 g, g]] are of order 2 for every g. With
-M = b A + Aᵀ b - b bᵀ = (g - 1/4) [[1, -1], [-1, 1]] a quadratic energy changes in each step, however long, by exactly what
-its power was at the stages, less h²/2 Σ M_ij <k_i, k_j>:
+The formulas with weights 1/2, 1/2 and the matrix [[g, 0], [1 - 2 g, g]] are of order 2 for every g. A quadratic energy
+changes in each step, however long, by exactly what its power was at the stages, less h²/2 Σ M_ij <k_i, k_j>, where
+M = b A + Aᵀ b - b bᵀ = (g - 1/4) [[1, -1], [-1, 1]]:
 
     safe      g = 1 - 1/√2   L-stable, and M >= 0: a step may lose energy that nobody took, and never makes any
     midpoint  g = 1/4        two half steps of the midpoint rule, M = 0: the balance of energy closes in each step
@@ -11,8 +11,8 @@ Stages are solved to round-off, for energies are exact only as far as they are; 
 by the kernel's own elimination. Where Newton's method fails, also with damping, steps are shortened.
 
 Source: E. Hairer and G. Wanner, "Solving Ordinary Differential Equations II" (1996), sections IV.8 and IV.12; of the
-formula, L. Pareschi and G. Russo, J. Sci. Comput. 25 (2005) 129; of damping, P. Deuflhard, "Newton Methods for Nonlinear
-Problems" (2004), section 3.3.
+formula, L. Pareschi and G. Russo, J. Sci. Comput. 25 (2005) 129; of damping, P. Deuflhard, "Newton Methods for
+Nonlinear Problems" (2004), section 3.3.
 """
 
 from contextlib import suppress
@@ -41,12 +41,15 @@ change."""
 FIRST = 0.1
 """Share of its natural size by which the first step may change an entry, times the root of the tolerance."""
 
+SHORTEST = 1e-30
+"""Of the time span: where the time is still zero, steps that short are given up."""
+
 CONSTANT = 0.05
 """About what the error of a step is, in units of h cubed times the third derivative (0.02 to 0.04)."""
 
 GROWTH, SHRINK, MARGIN, KEPT, DIVERGED = 2.0, 0.2, 0.85, 1.3, 0.25
-"""Bounds of what a step is to the last one; of its error; growth that is not worth new factors; what to do when there is
-no solution."""
+"""Bounds of what a step is to the last one; of its error; growth that is not worth new factors; where there is no
+solution."""
 
 
 class Diverged(Exception):
@@ -117,8 +120,8 @@ class Stepper:
         return self._simplified(t, base, share, Y)
 
     def _damped(self, t: float, base: Array, share: float, Y: Array) -> Array:
-        """The same by a new Jacobian wherever the last one leads nowhere, and then as much of its change as makes the next
-        one smaller."""
+        """The same by a new Jacobian wherever the last one leads nowhere, and then as much of its change as makes the
+        next one smaller."""
         for _ in range(ROUNDS):
             self.linearise(t, Y)
             with suppress(Diverged):
@@ -175,8 +178,8 @@ class Stepper:
         return end
 
     def _error(self, t: float, end: Array) -> float:
-        """The error of a step in units of what it may be: by the third derivative, from divided differences of the states,
-        or by the second where less is known."""
+        """The error of a step in units of what it may be: by the third derivative, from divided differences of the
+        states, or by the second where less is known."""
         points = [(t, end), (self.t, self.y), *self.past]
         times, differences = [then for then, _ in points], [state for _, state in points]
         order = len(points) - 1
@@ -235,7 +238,7 @@ def _integrate(
             states[done] = now.y
             frame(done, states[done])
             done += 1
-        elif (made and stands_still(before, now.t)) or now.h <= STANDSTILL * max(abs(now.t), last - first):
+        elif (made and stands_still(before, now.t)) or now.h <= max(STANDSTILL * abs(now.t), SHORTEST * (last - first)):
             reason = f"{name} stopped at t = {now.t:.6g}: no step is short enough; {SINGULAR}"
         elif hope.lost(now.tries, fraction):
             reason = f"{name} stopped at t = {now.t:.6g}: {now.tries} steps did not reach the end"

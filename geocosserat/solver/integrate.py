@@ -9,8 +9,8 @@ import numpy as np
 
 from geocosserat.kernel.contract import Array, Kernel, is_native
 from geocosserat.solver.consistent import consistent
-from geocosserat.solver.diagonal import GAMMAS
 from geocosserat.solver.cvode_native import cvode_native
+from geocosserat.solver.diagonal import GAMMAS
 from geocosserat.solver.ida_native import ida_native
 from geocosserat.solver.pieces import in_pieces
 from geocosserat.solver.radau_native import LARGEST, radau_native
