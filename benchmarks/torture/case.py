@@ -60,7 +60,7 @@ def planar(**changes: Any) -> dict[str, Any]:
                 "friction": [1.0, 2.0, 0.01],
             },
             "start": {"strain": ["1", "0", "3*(1 - s)**2*(1 + 2*s)"]},
-            "run": {"until": 0.05, "frames": 26, "accuracy": 1e-5},
+            "run": {"until": 0.05, "frames": 26, "accuracy": 1e-4},
         },
         changes,
     )
@@ -77,7 +77,7 @@ def spatial(**changes: Any) -> dict[str, Any]:
                 "friction": [1.0, 2.0, 2.0, 0.01, 0.01, 0.01],
             },
             "start": {"strain": ["1", "0", "0", "2*sin(pi*s)", "2*(1 - s)**2", "3*(1 - s)**2*(1 + 2*s)"]},
-            "run": {"until": 0.05, "frames": 26, "accuracy": 1e-5},
+            "run": {"until": 0.05, "frames": 26, "accuracy": 1e-4},
         },
         changes,
     )

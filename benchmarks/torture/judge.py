@@ -20,7 +20,9 @@ from geocosserat.planning.gap import position_gap
 from geocosserat.planning.settings import DEFAULT_ACCURACY
 from geocosserat.results.solution import Array, Solution
 
-SURVIVED, REFUSED, FAILED = OUTCOMES = ("survived", "refused", "failed")
+SURVIVED, REFUSED, FAILED, CUT_OFF = OUTCOMES = ("survived", "refused", "failed", "cut off")
+AUTO = "auto"
+"""The program's own choice of a method."""
 
 TIGHTER = 30.0
 """By how much the reference is more accurate than what is judged by it."""
@@ -87,8 +89,8 @@ def reference(case: Case) -> Reference:
 
 
 def judge(case: Case, method: str, known: Reference) -> Verdict:
-    """Computes a case by a method, "auto" being the program's own choice, and looks at what comes of it."""
-    changes = [] if method == "auto" else [f"run.method={method}"]
+    """Computes a case by a method, AUTO being the program's own choice, and looks at what comes of it."""
+    changes = [] if method == AUTO else [f"run.method={method}"]
     try:
         run = geocosserat.run(case.scene, settings=changes)
     except InputError as error:
@@ -122,7 +124,7 @@ def judge(case: Case, method: str, known: Reference) -> Verdict:
         told["error"] = apart(scene, found, known.solution) / accuracy
         if told["error"] > 1.0 + 1.0 / TIGHTER:
             wrong.append(f"{told['error']:.1f} times the error asked for")
-    if method in ("auto", "safe") and not sees_world(scene):
+    if method == AUTO and not sees_world(scene):
         moved = _moved(case, scene, changes, found)
         if moved > 2.0 * accuracy:
             wrong.append(f"moved as a whole it ends {moved:.1e} of its length elsewhere")
