@@ -6,6 +6,8 @@ from collections.abc import Callable, Sequence
 
 from benchmarks.torture.judge import OUTCOMES, SURVIVED, Verdict
 
+NUMBERS: tuple[Callable[[Verdict], float | None], ...] = (lambda v: v.ledger, lambda v: v.rise, lambda v: v.error)
+
 
 def table(verdicts: Sequence[Verdict]) -> str:
     """A line for each method, then one for each case that a method did not survive."""
@@ -18,7 +20,7 @@ def table(verdicts: Sequence[Verdict]) -> str:
         own = [v for v in verdicts if v.method == method]
         counts = [sum(v.outcome == outcome for v in own) for outcome in OUTCOMES]
         fell = sum(v.fell_back for v in own)
-        worst = [_worst(own, number) for number in (lambda v: v.ledger, lambda v: v.rise, lambda v: v.error)]
+        worst = [_worst(own, number) for number in NUMBERS]
         lines.append(f"| {' | '.join(map(str, (method, len(own), *counts, fell, *worst)))} |")
     lines += ["", "Ledger and energy: relative to the largest term, and to the energy at the start; error: over the one",
               "asked for; each the worst of the cases that were survived.", ""]  # fmt: skip

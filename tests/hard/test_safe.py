@@ -61,10 +61,10 @@ def _made(
     (_, _, was), (_, _, stored) = kernel.observe(0.0, before), kernel.observe(0.0, after)
     dissipated, work = after[-2:] - before[-2:]
     turns = np.abs(rod.turn(before)), np.abs(rod.turn(after))
-    stresses = (np.abs(kernel.observe(0.0, y)[1]) for y in (before, after))
-    on_rounding = sum(float((stress * turn).sum(axis=0) @ rod.mesh.weight) for stress, turn in zip(stresses, turns, strict=True))
+    stresses = [np.abs(kernel.observe(0.0, y)[1]) for y in (before, after)]
     off = stiff[:, None] * turns[1] * np.abs(rod.turn(after) - rod.turn(before))
-    rounded = on_rounding + float(off.sum(axis=0) @ rod.mesh.weight) + max(was, stored, abs(dissipated), abs(work))
+    powers = stresses[0] * turns[0] + stresses[1] * turns[1] + off
+    rounded = float(powers.sum(axis=0) @ rod.mesh.weight) + max(was, stored, abs(dissipated), abs(work))
     return stored - was + dissipated - work, ROUND_OFF * rounded
 
 
