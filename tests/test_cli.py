@@ -23,7 +23,7 @@ ROOT = Path(__file__).parents[1]
 QUICK = ("--set", "run.elements=1", "--set", "run.degree=4", "--set", "run.frames=3", "--set", "run.backend=numpy")
 FIELDS = {
     "scene", "motion", "unknowns", "method", "elements", "degree", "until", "tip", "base", "energy", "ledger", "error",
-    "evaluations", "seconds", "files",
+    "evaluations", "seconds", "files", "fell_back",
 }  # fmt: skip
 INNER = {
     "tip": {"position", "rotation"},

@@ -10,6 +10,7 @@ from geocosserat.discretisation.mesh import Array
 from geocosserat.discretisation.motions import strain_rates
 from geocosserat.discretisation.semidiscrete import SemiDiscrete
 
+
 @dataclass(frozen=True, eq=False)
 class Closed:
     """What closes the rod (`statics.system.Closure`); lengths relative to its own."""

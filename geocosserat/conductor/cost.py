@@ -150,7 +150,7 @@ class _Measured:
         )
 
     def _simulator(self, scene: Scene, seconds: float) -> Simulator:
-        return Simulator(scene, self.backend, kernel_text, Clock(), seconds)
+        return Simulator(scene, self.backend, kernel_text, Clock(), seconds, rescue=False)
 
     def _reference(self, scene: Scene, accuracy: float) -> tuple[Mesh, Array, Reference]:
         """The rod at the end as exactly as a plan gets it; none of its runs takes longer than all that is timed may."""

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from geocosserat.conductor.rescue import SAFE
 from geocosserat.conductor.search import Found
 from geocosserat.conductor.simulate import Clock
 from geocosserat.discretisation.mesh import Array
@@ -29,7 +30,7 @@ def solution_of(scene: Scene, found: Found, clock: Clock) -> Solution:
     trajectory = attempt.trajectory
     return Solution(
         **_fields(scene, attempt.rod, attempt.kernel, attempt.text, trajectory.times, trajectory.states),
-        method=attempt.setting.method,
+        method=attempt.setting.method if attempt.fell_back is None else SAFE,
         requested=scene.run.accuracy,
         estimated=found.estimate,
         evaluations={"rate": trajectory.rates, "jacobian": trajectory.jacobians, "steps": trajectory.steps},
@@ -38,6 +39,7 @@ def solution_of(scene: Scene, found: Found, clock: Clock) -> Solution:
         reached=found.reached,
         reason=found.reason,
         plan=found.plan,
+        fell_back=None if attempt.fell_back is None else attempt.fell_back.fields,
     )
 
 

@@ -9,6 +9,7 @@ from functools import partial
 
 import numpy as np
 
+from geocosserat.conductor.rescue import SAFE, FellBack, rescued
 from geocosserat.discretisation.mesh import Array
 from geocosserat.discretisation.sampling import stiffnesses
 from geocosserat.discretisation.semidiscrete import SemiDiscrete, discretise
@@ -47,7 +48,8 @@ class Clock:
 
 @dataclass(frozen=True, eq=False)
 class Attempt:
-    """One simulation at one setting; seconds: of the integration alone."""
+    """One simulation at one setting; seconds: of the integration alone; fell_back: if its method failed and the safe
+    one went on."""
 
     setting: Setting
     rod: SemiDiscrete
@@ -55,11 +57,16 @@ class Attempt:
     trajectory: Trajectory
     text: KernelText
     seconds: float
+    fell_back: FellBack | None = None
 
 
 def at_start(start: Array, times: Array) -> Trajectory:
     """Of a run that has not begun."""
     return Trajectory(times[:1].copy(), start[None].copy(), 0, 0, 0, False)
+
+
+def _nothing(_: Trajectory) -> None:
+    pass
 
 
 class _OutOfTime(Exception):
@@ -68,7 +75,7 @@ class _OutOfTime(Exception):
 
 class Simulator:
     """Simulates a scene on a backend at any setting; the clock says what for. seconds: after which an integration is
-    cut off."""
+    cut off; rescue: whether the safe method takes over where another one fails that the scene did not ask for."""
 
     def __init__(
         self,
@@ -77,9 +84,10 @@ class Simulator:
         kernel_text: Callable[[RodStructure], KernelText],
         clock: Clock,
         seconds: float = math.inf,
+        rescue: bool = True,
     ) -> None:
         self.scene, self.backend, self.kernel_text, self.clock = scene, backend, kernel_text, clock
-        self.seconds = seconds
+        self.seconds, self.rescue = seconds, rescue and scene.run.method is None
         self.instants = instants(scene)
         self._last: tuple[tuple[int, int], SemiDiscrete, NativeRod | NumpyRod, KernelText] | None = None
 
@@ -88,7 +96,7 @@ class Simulator:
         setting: Setting,
         frames: int,
         begin: Callable[[Array, Array], Trajectory] = at_start,
-        kept: Callable[[Trajectory], None] = lambda _: None,
+        kept: Callable[[Trajectory], None] = _nothing,
     ) -> Attempt:
         """A simulation that keeps so many states. begin: of the start (size,) and the times (frames,) what is there
         already; kept: is told of what one may go on from."""
@@ -98,19 +106,24 @@ class Simulator:
         _check_room(frames, len(rod.state))
         atol = tolerances(rod, setting.rtol, scene.run.atol, unit_of_energy(scene, rod, kernel))
         done = begin(rod.state, times)
-        start = time.perf_counter()
+        start, fell_back = time.perf_counter(), None
         with progress(scene.title) as report:
             told = _no_longer(self.seconds, report)
 
-            def leg(before: Trajectory, to_come: Array, frame: Frame) -> Trajectory:
-                part, start = partial(_of_the_rest, told, before, scene.run.until), before.states[-1]
-                return integrate(kernel, start, to_come, setting.method, setting.rtol, atol, part, frame, self.instants)
+            def integrated(method: str, done: Trajectory, kept: Callable[[Trajectory], None] = _nothing) -> Trajectory:
+                def leg(before: Trajectory, to_come: Array, frame: Frame) -> Trajectory:
+                    part, start = partial(_of_the_rest, told, before, scene.run.until), before.states[-1]
+                    return integrate(kernel, start, to_come, method, setting.rtol, atol, part, frame, self.instants)
+
+                return in_legs(leg, done, times, kept)
 
             try:
-                trajectory = in_legs(leg, done, times, kept)
+                trajectory = integrated(setting.method, done, kept)
+                if self.rescue and not trajectory.reached:  # from here on nothing is kept: whoever goes on fails again
+                    trajectory, fell_back = rescued(trajectory, setting.method, partial(integrated, SAFE))
             except _OutOfTime:
                 trajectory = replace(done, reason=f"cut off after {self.seconds:.3g} seconds")
-        return Attempt(setting, rod, kernel, trajectory, text, time.perf_counter() - start)
+        return Attempt(setting, rod, kernel, trajectory, text, time.perf_counter() - start, fell_back)
 
     def _on(self, elements: int, degree: int) -> tuple[SemiDiscrete, NativeRod | NumpyRod, KernelText]:
         """The rod on a mesh, its kernel, and that kernel's text; kept until another mesh is wanted."""

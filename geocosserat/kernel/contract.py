@@ -9,6 +9,9 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+ENERGIES = 2
+"""Of a rod's state: dissipated and work done, its last entries, on which nothing depends."""
+
 
 @dataclass(frozen=True)
 class Callbacks:
@@ -67,7 +70,8 @@ class Kernel(Protocol):
     """A first-order system y' = f(t, y) with its linear algebra.
 
     size: number of state entries. backend: "c" or "numpy". algebraic (size,): 1 for entries that are fixed by a
-    constraint f_i(t, y) = 0, linear in all of them, and have no rate; 0 for the others.
+    constraint f_i(t, y) = 0, linear in all of them, and have no rate; 0 for the others. quadratures: how many of the
+    last entries nothing depends on.
     """
 
     @property
@@ -78,6 +82,9 @@ class Kernel(Protocol):
 
     @property
     def algebraic(self) -> Array: ...
+
+    @property
+    def quadratures(self) -> int: ...
 
     def rate(self, t: float, y: Array, out: Array) -> None:
         """f(t, y) into out; y (size,) contiguous, not written."""

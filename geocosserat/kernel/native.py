@@ -13,7 +13,7 @@ import cffi
 import numpy as np
 
 from geocosserat.discretisation.semidiscrete import SemiDiscrete
-from geocosserat.kernel.contract import Array, Callbacks, Functions
+from geocosserat.kernel.contract import ENERGIES, Array, Callbacks, Functions
 
 DECLARATIONS = """
 typedef struct rod {
@@ -61,10 +61,6 @@ int problem_residual_solve(void *solver, void *none, void *x, void *b, double to
 """
 
 
-ENERGIES = 2
-"""Dissipated and work done, the last entries of the state, on which nothing depends."""
-
-
 @lru_cache(maxsize=1)
 def _interface() -> cffi.FFI:
     ffi = cffi.FFI()
@@ -92,6 +88,7 @@ class NativeRod:
     """The kernel of a semi-discrete rod in C. One call at a time: it owns its work space."""
 
     backend = "c"
+    quadratures = ENERGIES
 
     def __init__(self, library: Path, rod: SemiDiscrete) -> None:
         self._ffi = ffi = _interface()

@@ -4,13 +4,14 @@ import types
 from typing import Any
 
 from geocosserat.discretisation.semidiscrete import SemiDiscrete
-from geocosserat.kernel.contract import Array
+from geocosserat.kernel.contract import ENERGIES, Array
 
 
 class NumpyRod:
     """The generated numpy kernel of a semi-discrete rod."""
 
     backend = "numpy"
+    quadratures = ENERGIES
 
     def __init__(self, module: types.ModuleType, rod: SemiDiscrete) -> None:
         mesh = rod.mesh

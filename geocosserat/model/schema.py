@@ -16,7 +16,7 @@ RUN_KEYS: Final = (
 MOTIONS: Final = ("planar", "spatial")
 END_KINDS: Final = ("clamped", "free", "pinned", "driven")
 FRAMES: Final = ("body", "world")
-METHODS: Final = ("cvode", "radau", "bdf", "lsoda")
+METHODS: Final = ("cvode", "radau", "bdf", "lsoda", "safe", "midpoint")
 BACKENDS: Final = ("auto", "c", "numpy")
 
 MAX_PARAMETERS: Final = 1_000

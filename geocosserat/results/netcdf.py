@@ -30,7 +30,7 @@ FORMAT = "geocosserat solution 3"
 MOST_SECONDS, LEAST_RATE, COPIES = 30.0, 20e6, 8
 """What reading may take: seconds, for so many bytes of the file another one, and memory for so many copies of it."""
 
-_OBJECTS = ("evaluations", "seconds", "contents", "provenance", "plan")
+_OBJECTS = ("evaluations", "seconds", "contents", "provenance", "plan", "fell_back")
 _INTEGERS = ("elements", "degree", "unknowns", "reached")
 _NUMBERS = ("length", "requested", "estimated")
 
@@ -88,7 +88,7 @@ def _contents(path: str | os.PathLike[str], sealed: bytes) -> dict[str, Any]:
             raise FileError(path, f"the format {FORMAT!r}", repr(attributes.get("format")),
                             "read it with the version that wrote it, named in its attribute `provenance`")
         values: dict[str, Any] = {name: file.variables[name][...] for name in SHAPES if name in file.variables}
-    values |= {name: json.loads(attributes[name]) for name in _OBJECTS}
+    values |= {name: json.loads(attributes.get(name, "null")) for name in _OBJECTS}
     values |= {name: attributes[name] for name in (*TEXTS, *_INTEGERS)}
     values |= {name: attributes.get(name) for name in _NUMBERS}
     return {field.name: values.get(field.name) for field in fields(Solution)}

@@ -55,6 +55,7 @@ class Solution:
     provenance        versions, platform, date, kernel: whatever is needed to do it again
     reached, reason   whether the run came to its end with the accuracy asked for, and if not, why
     plan              the runs that led to it: setting, seconds and those foreseen; empty if the scene gave the setting
+    fell_back         where the safe method took over: from which one, at what time, and why; else None
 
     Arrays are copied, double precision and read-only. Equality is bit for bit.
 
@@ -91,6 +92,7 @@ class Solution:
     reached: bool
     reason: str
     plan: Sequence[Mapping[str, Any]] = ()
+    fell_back: Mapping[str, Any] | None = None
 
     def __post_init__(self) -> None:
         plain: dict[str, object] = {name: _frozen(getattr(self, name)) for name in SHAPES}
@@ -104,6 +106,7 @@ class Solution:
             # plain, and equal to what a file gives back
             "contents": json.loads(json.dumps(self.contents)),
             "plan": json.loads(json.dumps(list(self.plan))),
+            "fell_back": None if self.fell_back is None else dict(self.fell_back),
             "provenance": {str(key): str(value) for key, value in self.provenance.items()},
         }
         for name, value in plain.items():

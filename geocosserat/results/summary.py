@@ -35,6 +35,7 @@ def summary(
         "motion": solution.motion,
         "unknowns": solution.unknowns,
         "method": solution.method,
+        "fell_back": None if solution.fell_back is None else dict(solution.fell_back),
         "elements": solution.elements,
         "degree": solution.degree,
         "backend": solution.backend,
@@ -80,6 +81,7 @@ def print_summary(solution: Solution, console: Console, files: Iterable[str | os
         ("error", f"estimated {digits(fields['error']['estimated'], 2)}, "
                   f"requested {digits(fields['error']['requested'], 2)} (of the length)"),
         ("cost", _cost(fields)),
+        *(("fell back", _fell_back(told)) for told in [fields["fell_back"]] if told),
         *(("wrote", file) for file in fields["files"]),
     ]
     grid = Table.grid(padding=(0, 2))
@@ -92,6 +94,10 @@ def print_summary(solution: Solution, console: Console, files: Iterable[str | os
 
 def _law(law: Mapping[str, Any]) -> str:
     return f"{law['name']}: {law['verdict']}" + (f", {law['grade']}" if law["grade"] else "")
+
+
+def _fell_back(told: Mapping[str, Any]) -> str:
+    return f"to the safe method from t = {digits(told['at'], 6)} on: {told['reason']}"
 
 
 def _end(solution: Solution, node: int) -> dict[str, Any]:

@@ -11,6 +11,7 @@ import numpy as np
 from geocosserat.kernel.contract import Array, Kernel, is_native
 from geocosserat.solver.consistent import consistent
 from geocosserat.solver.cvode_native import cvode_native
+from geocosserat.solver.diagonal import GAMMAS
 from geocosserat.solver.ida_native import ida_native
 from geocosserat.solver.pieces import in_pieces
 from geocosserat.solver.radau_native import LARGEST, radau_native
@@ -19,6 +20,8 @@ from geocosserat.solver.sundials import sundials
 from geocosserat.solver.trajectory import Frame, Progress, Trajectory
 
 METHODS = ("cvode", "radau", "bdf", "lsoda")
+LAST_RESORTS = tuple(GAMMAS)
+"""Methods that are slow, for what the others cannot do; see diagonal.py."""
 
 
 def _silent(*_: object) -> None:
@@ -48,8 +51,9 @@ def integrate(
 
     Raises ValueError for an unknown method, or a start that is not finite.
     """
-    if method not in METHODS:
-        raise ValueError(f"expected a method out of {', '.join(METHODS)}, found {method!r}")
+    known = (*METHODS, *LAST_RESORTS)
+    if method not in known:
+        raise ValueError(f"expected a method out of {', '.join(known)}, found {method!r}")
     if not isfinite(start.dot(start)) and not np.isfinite(start).all():  # the former is quick, but may overflow
         raise ValueError("expected a finite initial state, found infinities or NaN; check the start of the scene")
     tolerance = np.empty(start.shape)
@@ -93,6 +97,8 @@ def _chosen(method: str, kernel: Kernel) -> Integrator:
         library = sundials("IDA" if constrained else "CVode")
         if library is not None:
             return partial(ida_native if constrained else cvode_native, library)
+    if method in GAMMAS:  # takes constraints as they are
+        return _integrator("diagonal", method)
     found = _integrator("cvode", "cvode") if method == "cvode" else _integrator("scipy_methods", method)
     return reduced(found) if constrained else found
 

@@ -40,7 +40,7 @@ class Reduced:
     """The differential part of a kernel's state; the rest is found anew for each state."""
 
     def __init__(self, kernel: Kernel, y: Array) -> None:
-        self.kernel, self.backend = kernel, kernel.backend
+        self.kernel, self.backend, self.quadratures = kernel, kernel.backend, kernel.quadratures
         self.fixed = np.flatnonzero(kernel.algebraic)
         self.moving = np.flatnonzero(kernel.algebraic == 0.0)
         self.size = len(self.moving)

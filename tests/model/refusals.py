@@ -227,7 +227,7 @@ REFUSALS: list[tuple[str, Any, str]] = [
     ("run.degree", 0, "run.degree: expected a whole number from 1 to 64, found 0"),
     ("run.degree", 65, "run.degree: expected a whole number from 1 to 64"),
     ("run.method", "euler",
-     "run.method: expected one of cvode, radau, bdf, lsoda, found 'euler'; write one of"),
+     "run.method: expected one of cvode, radau, bdf, lsoda, safe, midpoint, found 'euler'; write one of"),
     ("run.backend", "cuda", "run.backend: expected one of auto, c, numpy, found 'cuda'"),
     ("run.rtol", 0, "run.rtol: expected a positive number, found 0"),
     ("run.atol", -1e-9, "run.atol: expected a positive number, found -1e-09"),

@@ -136,5 +136,5 @@ def test_the_record_has_the_agreed_fields() -> None:
         "scene", "title", "motion", "length", "time", "u", "u_point", "position", "rotation", "angle", "twist", "turn",
         "stress", "energy", "dissipated", "work", "method", "elements", "degree", "unknowns", "backend", "requested",
         "estimated", "evaluations", "seconds", "contents", "provenance", "reached", "reason",
-        "plan",
+        "plan", "fell_back",
     ]

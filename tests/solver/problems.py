@@ -26,6 +26,8 @@ class Problem:
     jacobians: int = 0
     fixed: int = 0
     """How many entries, the last ones, are fixed by constraints."""
+    quadratures: int = 0
+    """How many of the last entries nothing depends on."""
 
     @property
     def algebraic(self) -> Array:

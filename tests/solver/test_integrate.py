@@ -154,7 +154,7 @@ def test_the_start_is_left_as_it_was() -> None:
 
 def test_an_unknown_method_is_refused_with_the_known_ones() -> None:
     """The message lists them."""
-    with pytest.raises(ValueError, match="a method out of cvode, radau, bdf, lsoda, found 'euler'"):
+    with pytest.raises(ValueError, match="a method out of cvode, radau, bdf, lsoda, safe, midpoint, found 'euler'"):
         integrate(forced(7), np.ones(7), TIMES, "euler")
 
 
