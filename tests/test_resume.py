@@ -4,6 +4,7 @@ import io
 import zipfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,13 +13,14 @@ import pytest
 
 import geocosserat
 from geocosserat.conductor import simulate
+from geocosserat.kernel.contract import Array
 from geocosserat.model.errors import InputError
 from geocosserat.results import seal
 from geocosserat.results.checkpoint import NAME, load_checkpoint
 from geocosserat.results.errors import FileError
 from geocosserat.results.solution import SHAPES, Solution
 from geocosserat.solver import legs
-from geocosserat.solver.trajectory import Progress
+from geocosserat.solver.trajectory import Progress, Trajectory
 from tests.marks import slow
 
 
@@ -128,6 +130,32 @@ def test_legs_end_when_there_is_enough_to_lose_and_leave_short_runs_whole(
     assert uncut.evaluations["steps"] < cut.evaluations["steps"] < 3 * uncut.evaluations["steps"]
     np.testing.assert_allclose(cut.solution.position[-1], whole.solution.position[-1], rtol=0, atol=1e-6)
     np.testing.assert_allclose(cut.ledger["dissipated"], whole.ledger["dissipated"], rtol=1e-5)
+
+
+def test_a_run_that_fell_back_goes_on_bit_for_bit(
+    tmp_path: Path, short_legs: None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The method that failed fails again at the same time, and the safe one takes over there: nothing else would come
+    to the same end."""
+    whole = simulate.integrate
+
+    def breaks(kernel: Any, start: Array, times: Array, method: str, *rest: Any) -> Trajectory:
+        if method == "safe" or times[-1] <= 0.5:
+            return whole(kernel, start, times, method, *rest)
+        found = whole(kernel, start, times[times <= 0.5], method, *rest)
+        done = len(found.times) > 1 and found.times[-1] < 0.5  # a leg that ended before
+        return found if done else replace(found, reached=False, reason="broke")
+
+    monkeypatch.setattr(simulate, "integrate", breaks)
+    scene = {**DRIVEN, "run": {**DRIVEN["run"], "rtol": 1e-4, "elements": 1}}
+    with monkeypatch.context() as patched:
+        _interrupt_after(0, patched, 0.8)
+        with pytest.raises(KeyboardInterrupt):
+            geocosserat.run(scene, tmp_path)
+    assert 2 < len(load_checkpoint(tmp_path).states) < 12
+    found = geocosserat.run(scene, tmp_path, resume=True)
+    assert found.fell_back["at"] == 0.5
+    _same(found.solution, geocosserat.run(scene).solution)
 
 
 def test_a_driven_end_goes_on_from_where_it_was(
