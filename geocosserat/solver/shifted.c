@@ -10,12 +10,12 @@
 #include <math.h>
 #include <string.h>
 
-enum { LANES = 4, ROWS = 8 }; /* columns of matrices are padded to a multiple of ROWS */
+enum { LANES = 4, ROWS = 2 * LANES }; /* columns of matrices are padded to a multiple of ROWS */
 
 typedef double lanes __attribute__((vector_size(LANES * sizeof(double)), aligned(sizeof(double))));
 typedef long long choice __attribute__((vector_size(LANES * sizeof(long long)), aligned(sizeof(long long)))); /* all bits of a lane, or none */
 
-/* Rows of a column. */
+/* Rows of a column, or what a number is made of. */
 typedef double strip __attribute__((vector_size(ROWS * sizeof(double)), aligned(sizeof(double))));
 
 /* A complex number in each lane. */
@@ -172,32 +172,35 @@ static int shift(shifted *s, number g)
     return all != 0.0;
 }
 
-/* x + f times what stands in rows i to i + 3 of the strictly lower triangle, left of column `end`, times x: into these rows
- * of x. Four at once, since each waits for its last addition. */
-static inline void add_rows(int w, const double *restrict row, int end, double f, const number *restrict x, number *y)
+/* Four rows of the strictly lower triangle, left of column `end`, times f x, added to y. At once, since each waits for its last
+ * addition; real and imaginary parts of all lanes make one strip. */
+static inline void add_rows(int w, const double *restrict row, int end, double f, const strip *restrict x, strip *y)
 {
-    number sum[4] = {y[0], y[1], y[2], y[3]};
-    for (int j = 1; j < end; ++j)
-        for (int k = 0; k < 4; ++k) {
-            const double g = f * row[k * w + j];
-            sum[k].re += g * x[j].re;
-            sum[k].im += g * x[j].im;
-        }
-    memcpy(y, sum, sizeof sum);
+    strip a = y[0], b = y[1], c = y[2], d = y[3];
+    for (int j = 1; j < end; ++j) {
+        const strip g = f * x[j];
+        a += row[j] * g;
+        b += row[w + j] * g;
+        c += row[2 * w + j] * g;
+        d += row[3 * w + j] * g;
+    }
+    y[0] = a;
+    y[1] = b;
+    y[2] = c;
+    y[3] = d;
 }
 
 /* The same of row i by itself, from column `begin` on. */
-static inline void add_row(const double *restrict row, int begin, int i, double f, number *x)
+static inline void add_row(const double *restrict row, int begin, int i, double f, strip *x)
 {
-    for (int j = begin; j < i; ++j) {
-        const double g = f * row[j];
-        x[i].re += g * x[j].re;
-        x[i].im += g * x[j].im;
-    }
+    strip sum = x[i];
+    for (int j = begin; j < i; ++j)
+        sum += f * row[j] * x[j];
+    x[i] = sum;
 }
 
 /* x becomes T^-1 x. */
-static void untwist(int n, int w, const double *lower, number *x)
+static void untwist(int n, int w, const double *lower, strip *x)
 {
     int i = 0;
     for (; i + 4 <= n; i += 4) {
@@ -210,7 +213,7 @@ static void untwist(int n, int w, const double *lower, number *x)
 }
 
 /* x becomes T x. */
-static void twist(int n, int w, const double *lower, number *x)
+static void twist(int n, int w, const double *lower, strip *x)
 {
     int i = n;
     for (; i % 4; --i)
@@ -226,7 +229,7 @@ static void twist(int n, int w, const double *lower, number *x)
 static void solve_shifted(const shifted *s, number *restrict x)
 {
     const int n = s->size, w = s->width;
-    untwist(n, w, s->lower, x);
+    untwist(n, w, s->lower, (strip *)x);
     for (int k = 0; k + 1 < n; ++k) {
         exchange_numbers(s->exchanged[k], x + k, x + k + 1);
         x[k + 1] = less(x[k + 1], s->factor[k], x[k]);
@@ -240,5 +243,5 @@ static void solve_shifted(const shifted *s, number *restrict x)
     }
     if (j == 0)
         x[0] = times(x[0], s->upper[0]);
-    twist(n, w, s->lower, x);
+    twist(n, w, s->lower, (strip *)x);
 }
