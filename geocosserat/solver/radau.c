@@ -659,11 +659,11 @@ static int step(radau *r)
         if (!(error < 1.0)) {
             trouble = STANDSTILL;
             doubt = doubt > MIDDLE ? doubt : MIDDLE;
-            change_step(r, (r->last_h > 0.0 ? factor_h : fmin(factor_h, fmax(0.1, 0.9 / error))) * r->h); /* at first: as of a layer */;
+            change_step(r, (r->last_h > 0.0 ? factor_h : 0.1) * r->h);;
             continue;
         }
-        if (r->last_h > 0.0) /* what the last two steps foretell: a motion that calms down lets steps grow all the time */
-            factor_h = fmax(factor_h, fmin(8.0, safety * r->h / r->last_h * pow(error * error / r->last_error, power)));
+        if (r->last_h > 0.0) /* what the last two steps foretell; where it is more, taking it would make errors less regular */
+            factor_h = fmin(factor_h, fmax(0.2, safety * r->h / r->last_h * pow(error * error / r->last_error, power)));
         if (r->contraction > 0.0)
             factor_h = fmin(factor_h, fmax(1.0, pow(CONTRACTION / r->contraction, 1.0 / CONTRACTION_POWER)));
         if (failures)

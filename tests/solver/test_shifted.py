@@ -62,7 +62,7 @@ class Systems:
         self._lib: Any = self._ffi.dlopen(str(library))
 
     def solve(self, A: Array, g: np.ndarray, b: np.ndarray) -> tuple[bool, np.ndarray]:
-        """Whether 1 - g A is regular for all g (LANES,), and the solutions (n, LANES) for right-hand sides like them."""
+        """Whether 1 - g A is regular for all g (LANES,), and solutions (n, LANES) for right-hand sides like them."""
         n = len(A)
         x = np.empty((n, 2, LANES))
         arrays = (
@@ -93,7 +93,8 @@ def test_each_lane_has_its_own_shift(systems: Systems, n: int) -> None:
     regular, x = systems.solve(A, g, b)
     assert regular
     for lane in range(LANES):
-        np.testing.assert_allclose(x[:, lane], np.linalg.solve(np.eye(n) - g[lane] * A, b[:, lane]), rtol=1e-9, atol=1e-9)
+        wanted = np.linalg.solve(np.eye(n) - g[lane] * A, b[:, lane])
+        np.testing.assert_allclose(x[:, lane], wanted, rtol=1e-9, atol=1e-9)
 
 
 def test_scales_may_differ_by_decades(systems: Systems) -> None:
