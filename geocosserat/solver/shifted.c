@@ -1,7 +1,8 @@
 /* Systems  (1 - g A) x = b  with one real matrix A and several complex numbers g, which change more often than A does.
  *
- * A is brought to Hessenberg form once, A = T H T^-1, by eliminations with exchanges of rows and columns; what is to be done for
- * new g then grows with the square of the size, not with its cube. All g are treated at once, one in each lane of vectors.
+ * A is brought to Hessenberg form once, A = T H T^-1, by eliminations with exchanges of rows and columns; what is to be
+ * done for new g then grows with the square of the size, not with its cube. All g are treated at once, one in each lane of
+ * vectors, which are those of gcc and clang: wider or narrower than the machine's as they may be.
  *
  * Sources: W. H. Enright, ACM Trans. Math. Softw. 4 (1978) 127, for the idea; J. H. Wilkinson, The Algebraic Eigenvalue
  * Problem (1965), section 6.8, for the reduction.
@@ -13,7 +14,8 @@
 enum { LANES = 4, ROWS = 2 * LANES }; /* columns of matrices are padded to a multiple of ROWS */
 
 typedef double lanes __attribute__((vector_size(LANES * sizeof(double)), aligned(sizeof(double))));
-typedef long long choice __attribute__((vector_size(LANES * sizeof(long long)), aligned(sizeof(long long)))); /* all bits of a lane, or none */
+/* All bits of a lane, or none. */
+typedef long long choice __attribute__((vector_size(LANES * sizeof(long long)), aligned(sizeof(long long))));
 
 /* Rows of a column, or what a number is made of. */
 typedef double strip __attribute__((vector_size(ROWS * sizeof(double)), aligned(sizeof(double))));
@@ -149,7 +151,8 @@ static int shift(shifted *s, number g)
     for (int k = 0; k < n; ++k) {
         const double *H = s->H + k + 1; /* the next row */
         number pivot = row[k], below = k + 1 < n ? (number){-g.re * H[k * w], -g.im * H[k * w]} : zero;
-        const choice where = magnitude(below.re) + magnitude(below.im) > magnitude(pivot.re) + magnitude(pivot.im);
+        const lanes least = magnitude(pivot.re) + magnitude(pivot.im);
+        const choice where = (choice)(magnitude(below.re) + magnitude(below.im) > least);
         exchange_numbers(where, &pivot, &below);
         const lanes size = 1.0 / (pivot.re * pivot.re + pivot.im * pivot.im);
         const number one = {size * pivot.re, -size * pivot.im}, f = times(below, one);
@@ -172,8 +175,8 @@ static int shift(shifted *s, number g)
     return all != 0.0;
 }
 
-/* Four rows of the strictly lower triangle, left of column `end`, times f x, added to y. At once, since each waits for its last
- * addition; real and imaginary parts of all lanes make one strip. */
+/* Four rows of the strictly lower triangle, left of column `end`, times f x, added to y. At once, since each waits for its
+ * last addition; real and imaginary parts of all lanes make one strip. */
 static inline void add_rows(int w, const double *restrict row, int end, double f, const strip *restrict x, strip *y)
 {
     strip a = y[0], b = y[1], c = y[2], d = y[3];
