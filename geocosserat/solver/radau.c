@@ -365,8 +365,9 @@ static inline void scatter(const int S, strip all, double *x, int apart)
         x[s * apart] = all[s];
 }
 
-/* y += A x for all stages, A [columns][apart] of so many rows; four of them at once, since each waits for its last addition. */
-static void add_stages(int rows, int columns, int apart, const double *restrict A, const strip *restrict x, strip *restrict y)
+/* y += A x for all stages, A [columns][apart] of so many rows; four at once, since each waits for its last addition. */
+static void add_stages(int rows, int columns, int apart, const double *restrict A, const strip *restrict x,
+                       strip *restrict y)
 {
     int i = 0;
     for (; i + 4 <= rows; i += 4) {
@@ -659,11 +660,11 @@ static int step(radau *r)
         if (!(error < 1.0)) {
             trouble = STANDSTILL;
             doubt = doubt > MIDDLE ? doubt : MIDDLE;
-            change_step(r, (r->last_h > 0.0 ? factor_h : fmin(factor_h, fmax(0.1, 0.9 / error))) * r->h); /* at first: as of a layer */;
+            change_step(r, (r->last_h > 0.0 ? factor_h : 0.1) * r->h);
             continue;
         }
-        if (r->last_h > 0.0) /* what the last two steps foretell: a motion that calms down lets steps grow all the time */
-            factor_h = fmax(factor_h, fmin(8.0, safety * r->h / r->last_h * pow(error * error / r->last_error, power)));
+        if (r->last_h > 0.0) /* what the last two steps foretell, if less: errors stay more regular */
+            factor_h = fmin(factor_h, fmax(0.2, safety * r->h / r->last_h * pow(error * error / r->last_error, power)));
         if (r->contraction > 0.0)
             factor_h = fmin(factor_h, fmax(1.0, pow(CONTRACTION / r->contraction, 1.0 / CONTRACTION_POWER)));
         if (failures)

@@ -1,7 +1,8 @@
 /* Systems  (1 - g A) x = b  with one real matrix A and several complex numbers g, which change more often than A does.
  *
- * A is brought to Hessenberg form once, A = T H T^-1, by eliminations with exchanges of rows and columns; what is to be done for
- * new g then grows with the square of the size, not with its cube. All g are treated at once, one in each lane of vectors.
+ * A is brought to Hessenberg form once, A = T H T^-1, by eliminations with exchanges of rows and columns; what is to be
+ * done for new g then grows with the square of the size, not with its cube. All g are treated at once, one in each lane of
+ * vectors, which are those of gcc and clang: wider or narrower than the machine's as they may be.
  *
  * Sources: W. H. Enright, ACM Trans. Math. Softw. 4 (1978) 127, for the idea; J. H. Wilkinson, The Algebraic Eigenvalue
  * Problem (1965), section 6.8, for the reduction.
@@ -10,12 +11,13 @@
 #include <math.h>
 #include <string.h>
 
-enum { LANES = 4, ROWS = 8 }; /* columns of matrices are padded to a multiple of ROWS */
+enum { LANES = 4, ROWS = 2 * LANES }; /* columns of matrices are padded to a multiple of ROWS */
 
 typedef double lanes __attribute__((vector_size(LANES * sizeof(double)), aligned(sizeof(double))));
-typedef long long choice __attribute__((vector_size(LANES * sizeof(long long)), aligned(sizeof(long long)))); /* all bits of a lane, or none */
+/* All bits of a lane, or none. */
+typedef long long choice __attribute__((vector_size(LANES * sizeof(long long)), aligned(sizeof(long long))));
 
-/* Rows of a column. */
+/* Rows of a column, or what a number is made of. */
 typedef double strip __attribute__((vector_size(ROWS * sizeof(double)), aligned(sizeof(double))));
 
 /* A complex number in each lane. */
@@ -149,7 +151,8 @@ static int shift(shifted *s, number g)
     for (int k = 0; k < n; ++k) {
         const double *H = s->H + k + 1; /* the next row */
         number pivot = row[k], below = k + 1 < n ? (number){-g.re * H[k * w], -g.im * H[k * w]} : zero;
-        const choice where = magnitude(below.re) + magnitude(below.im) > magnitude(pivot.re) + magnitude(pivot.im);
+        const lanes least = magnitude(pivot.re) + magnitude(pivot.im);
+        const choice where = (choice)(magnitude(below.re) + magnitude(below.im) > least);
         exchange_numbers(where, &pivot, &below);
         const lanes size = 1.0 / (pivot.re * pivot.re + pivot.im * pivot.im);
         const number one = {size * pivot.re, -size * pivot.im}, f = times(below, one);
@@ -172,32 +175,35 @@ static int shift(shifted *s, number g)
     return all != 0.0;
 }
 
-/* x + f times what stands in rows i to i + 3 of the strictly lower triangle, left of column `end`, times x: into these rows
- * of x. Four at once, since each waits for its last addition. */
-static inline void add_rows(int w, const double *restrict row, int end, double f, const number *restrict x, number *y)
+/* Four rows of the strictly lower triangle, left of column `end`, times f x, added to y. At once, since each waits for its
+ * last addition; real and imaginary parts of all lanes make one strip. */
+static inline void add_rows(int w, const double *restrict row, int end, double f, const strip *restrict x, strip *y)
 {
-    number sum[4] = {y[0], y[1], y[2], y[3]};
-    for (int j = 1; j < end; ++j)
-        for (int k = 0; k < 4; ++k) {
-            const double g = f * row[k * w + j];
-            sum[k].re += g * x[j].re;
-            sum[k].im += g * x[j].im;
-        }
-    memcpy(y, sum, sizeof sum);
+    strip a = y[0], b = y[1], c = y[2], d = y[3];
+    for (int j = 1; j < end; ++j) {
+        const strip g = f * x[j];
+        a += row[j] * g;
+        b += row[w + j] * g;
+        c += row[2 * w + j] * g;
+        d += row[3 * w + j] * g;
+    }
+    y[0] = a;
+    y[1] = b;
+    y[2] = c;
+    y[3] = d;
 }
 
 /* The same of row i by itself, from column `begin` on. */
-static inline void add_row(const double *restrict row, int begin, int i, double f, number *x)
+static inline void add_row(const double *restrict row, int begin, int i, double f, strip *x)
 {
-    for (int j = begin; j < i; ++j) {
-        const double g = f * row[j];
-        x[i].re += g * x[j].re;
-        x[i].im += g * x[j].im;
-    }
+    strip sum = x[i];
+    for (int j = begin; j < i; ++j)
+        sum += f * row[j] * x[j];
+    x[i] = sum;
 }
 
 /* x becomes T^-1 x. */
-static void untwist(int n, int w, const double *lower, number *x)
+static void untwist(int n, int w, const double *lower, strip *x)
 {
     int i = 0;
     for (; i + 4 <= n; i += 4) {
@@ -210,7 +216,7 @@ static void untwist(int n, int w, const double *lower, number *x)
 }
 
 /* x becomes T x. */
-static void twist(int n, int w, const double *lower, number *x)
+static void twist(int n, int w, const double *lower, strip *x)
 {
     int i = n;
     for (; i % 4; --i)
@@ -226,7 +232,7 @@ static void twist(int n, int w, const double *lower, number *x)
 static void solve_shifted(const shifted *s, number *restrict x)
 {
     const int n = s->size, w = s->width;
-    untwist(n, w, s->lower, x);
+    untwist(n, w, s->lower, (strip *)x);
     for (int k = 0; k + 1 < n; ++k) {
         exchange_numbers(s->exchanged[k], x + k, x + k + 1);
         x[k + 1] = less(x[k + 1], s->factor[k], x[k]);
@@ -240,5 +246,5 @@ static void solve_shifted(const shifted *s, number *restrict x)
     }
     if (j == 0)
         x[0] = times(x[0], s->upper[0]);
-    twist(n, w, s->lower, x);
+    twist(n, w, s->lower, (strip *)x);
 }

@@ -70,6 +70,17 @@ def test_c_and_numpy_agree_to_round_off(case: Case) -> None:
         np.testing.assert_allclose(found, wanted, rtol=0, atol=1e-13 * np.abs(wanted).max())
 
 
+@pytest.mark.parametrize("case", cases(("c",), ("planar everything",)), ids=str)
+@pytest.mark.parametrize("bend", [0.0, -2.0, 9.0, -300.0, 4e4, 3e6])
+def test_frames_may_turn_however_far(case: Case, bend: float) -> None:
+    """Through all quadrants, many turns, and so many that C leaves cosines to its library; but for what is lost of the
+    angle itself."""
+    y, points = state(case, 5), case.elements * case.degree
+    y[2 * points : 3 * points] += bend
+    found, wanted = rate(case, T, y), rate(case._replace(backend="numpy"), T, y)
+    np.testing.assert_allclose(found, wanted, rtol=0, atol=1e-13 * (1.0 + abs(bend)) * np.abs(wanted).max())
+
+
 @pytest.mark.parametrize(
     "case",
     [c for c in cases() if c.name.endswith(("everything", "stirred", "cranked")) and c[1:3] == SIZES[1]],
