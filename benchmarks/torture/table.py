@@ -6,15 +6,17 @@ from collections.abc import Callable, Sequence
 
 from benchmarks.torture.judge import OUTCOMES, SURVIVED, Verdict
 
-NUMBERS: tuple[Callable[[Verdict], float | None], ...] = (lambda v: v.ledger, lambda v: v.rise, lambda v: v.error)
+COLUMNS = ("fell back", "worst ledger", "worst rise of energy", "worst error")
+Number = Callable[[Verdict], float | None]
+NUMBERS: tuple[Number, ...] = (lambda v: v.ledger, lambda v: v.rise, lambda v: v.error)
 
 
 def table(verdicts: Sequence[Verdict]) -> str:
     """A line for each method, then one for each case that a method did not survive."""
     methods = list(dict.fromkeys(v.method for v in verdicts))
     lines = [
-        f"| method | cases | {' | '.join(OUTCOMES)} | fell back | worst ledger | worst rise of energy | worst error |",
-        f"|---|---|{'---|' * (len(OUTCOMES) + 4)}",
+        f"| {' | '.join(('method', 'cases', *OUTCOMES, *COLUMNS))} |",
+        f"|---|---|{'---|' * (len(OUTCOMES) + len(COLUMNS))}",
     ]
     for method in methods:
         own = [v for v in verdicts if v.method == method]
@@ -28,6 +30,6 @@ def table(verdicts: Sequence[Verdict]) -> str:
     return "\n".join(lines)
 
 
-def _worst(verdicts: Sequence[Verdict], number: Callable[[Verdict], float | None]) -> str:
+def _worst(verdicts: Sequence[Verdict], number: Number) -> str:
     values = [x for v in verdicts if v.outcome == SURVIVED and (x := number(v)) is not None]
     return f"{max(values):.1e}" if values else "-"

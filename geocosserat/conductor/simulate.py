@@ -20,6 +20,7 @@ from geocosserat.kernel.native import NativeRod
 from geocosserat.kernel.pure import NumpyRod
 from geocosserat.model.errors import InputError
 from geocosserat.model.records import Scene
+from geocosserat.planning.gap import position_gap
 from geocosserat.planning.resolution import instants
 from geocosserat.planning.settings import DEFAULT_ACCURACY, Setting
 from geocosserat.results.progress import progress
@@ -194,6 +195,17 @@ def drift(rod: SemiDiscrete, trajectory: Trajectory) -> float:
         return 0.0
     home = first[far] if rod.guide is None else rod.guide.at(trajectory.times[-1])[: first.shape[-1]]
     return float(np.linalg.norm(last[far] - home))
+
+
+def misplaced(rod: SemiDiscrete, trajectory: Trajectory) -> float:
+    """How far nodes are from where their strains put them, at the start or at the end; a length. Meshes on which a rod
+    turns more often in an element than its points can tell may agree with each other on a motion that is none."""
+    return max(_misplaced(rod, trajectory.states[i], float(trajectory.times[i])) for i in (0, -1))
+
+
+def _misplaced(rod: SemiDiscrete, state: Array, t: float) -> float:
+    mesh, poses = rod.finer_poses(state, t)
+    return position_gap(rod.mesh, rod.poses(state, t).position, mesh, poses.position)
 
 
 def unbalanced(scene: Scene, attempt: Attempt) -> float:
