@@ -4,9 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from benchmarks.torture.judge import OUTCOMES, SURVIVED, Verdict
+from benchmarks.torture.judge import OUTCOMES, REFUSED, SURVIVED, Verdict
+
+PEER = "lines"
+"""The method of lines, which refuses most cases."""
 
 COLUMNS = ("fell back", "worst ledger", "worst rise of energy", "worst error")
+LEGEND = (
+    "Ledger: relative to its largest term; rise: of the energy of a rod on which nothing acts, relative to that at the",
+    "start; error: over the one asked for. Each is the worst of the cases that were survived.",
+)
 Number = Callable[[Verdict], float | None]
 NUMBERS: tuple[Number, ...] = (lambda v: v.ledger, lambda v: v.rise, lambda v: v.error)
 
@@ -24,9 +31,9 @@ def table(verdicts: Sequence[Verdict]) -> str:
         fell = sum(v.fell_back for v in own)
         worst = [_worst(own, number) for number in NUMBERS]
         lines.append(f"| {' | '.join(map(str, (method, len(own), *counts, fell, *worst)))} |")
-    lines += ["", "Ledger and energy: relative to the largest term, and to the energy at the start; error: over the one",
-              "asked for; each the worst of the cases that were survived.", ""]  # fmt: skip
-    lines += [f"* {v.case}, {v.method}: {v.outcome}: {v.why}" for v in verdicts if v.outcome != SURVIVED]
+    lines += ["", *LEGEND, ""]
+    told = [v for v in verdicts if v.outcome != SURVIVED and (v.method, v.outcome) != (PEER, REFUSED)]
+    lines += [f"* {v.case}, {v.method}: {v.outcome}: {v.why}" for v in told]
     return "\n".join(lines)
 
 
