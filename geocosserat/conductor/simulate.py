@@ -22,7 +22,7 @@ from geocosserat.model.errors import InputError
 from geocosserat.model.records import Scene
 from geocosserat.planning.gap import position_gap
 from geocosserat.planning.resolution import instants
-from geocosserat.planning.settings import DEFAULT_ACCURACY, Setting
+from geocosserat.planning.settings import DEFAULT_ACCURACY, HABITS, Setting
 from geocosserat.results.progress import progress
 from geocosserat.solver.integrate import integrate
 from geocosserat.solver.trajectory import Frame, Progress, Trajectory
@@ -104,13 +104,15 @@ class Simulator:
             else:
                 to_come, told = times[len(done) - 1 :], _no_longer(self.seconds, report)
 
-                def integrated(method: str, begun: Array, wanted: Array) -> Trajectory:
-                    return integrate(kernel, begun, wanted, method, setting.rtol, atol, told, frame, self.instants)
+                def integrated(method: str, looser: float, begun: Array, wanted: Array) -> Trajectory:
+                    rtol, of_each = looser * setting.rtol, looser * atol
+                    return integrate(kernel, begun, wanted, method, rtol, of_each, told, frame, self.instants)
 
                 try:
-                    rest = integrated(setting.method, done[-1], to_come)
+                    rest = integrated(setting.method, 1.0, done[-1], to_come)
                     if self.rescue and not rest.reached:
-                        rest, fell_back = rescued(rest, setting.method, to_come, partial(integrated, SAFE))
+                        by_safe = partial(integrated, SAFE, max(1.0, HABITS[SAFE].least / setting.rtol))
+                        rest, fell_back = rescued(rest, setting.method, to_come, by_safe)
                 except _OutOfTime:
                     why = f"cut off after {self.seconds:.3g} seconds"
                     rest = Trajectory(to_come[:1], done[-1:], 0, 0, 0, False, why)
