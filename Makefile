@@ -2,7 +2,7 @@
 # Any POSIX make, Python 3.11 or newer, Linux or macOS. Installing compiles nothing; a C compiler makes runs faster.
 .POSIX:
 .SUFFIXES:
-.PHONY: help demo test bench generated errata clean
+.PHONY: help demo test bench torture generated errata clean
 
 PYTHON = python3
 OUT = out
@@ -14,6 +14,7 @@ help:
 	@echo "make demo       install into .venv, simulate examples/helix.toml, write numbers and a picture to $(OUT)/demo"
 	@echo "make test       lint, types and tests; make test TESTS='-m slow' runs those that take long"
 	@echo "make bench      time and accuracy, measured"
+	@echo "make torture    scenes that should break a program, by every method: a table, and $(OUT)/torture.jsonl"
 	@echo "make generated  write the kernels in generated/ again"
 	@echo "make errata     judge the paper and write docs/errata.md again"
 	@echo "make clean      remove .venv, $(OUT) and all caches"
@@ -29,6 +30,9 @@ test: .venv/tools
 
 bench: .venv/peers
 	$(BIN)/python -m benchmarks
+
+torture: .venv/installed
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m benchmarks.torture --lines $(OUT)/torture.jsonl
 
 generated: .venv/locked
 	$(BIN)/python -m geocosserat.codegen.catalogue

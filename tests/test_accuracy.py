@@ -185,3 +185,16 @@ def test_two_held_ends_count_what_the_far_one_strayed() -> None:
     ends = run.solution.position[:, -1]
     assert run.reached
     assert np.linalg.norm(ends[1] - ends[0]) <= run.error["estimated"] <= 1e-7
+
+
+@pytest.mark.slow
+def test_a_rod_rolled_up_more_often_than_a_mesh_can_tell_is_computed_on_a_finer_one() -> None:
+    """A hundred turns on one element: two coarse meshes agree on a motion that is none, to within the accuracy."""
+    scene = {
+        "rod": {"motion": "planar", "length": 1.0, "stiffness": [1e4, 1e4, 1.0], "friction": [1.0, 2.0, 0.01]},
+        "start": {"strain": ["1", "0", "200*pi"]},
+        "run": {"until": 0.05, "frames": 2, "accuracy": 1e-4},
+    }
+    run, fine = (geocosserat.run(scene, accuracy=accuracy) for accuracy in (1e-4, 1e-6))
+    assert run.reached
+    assert np.linalg.norm(np.subtract(run.tip["position"], fine.tip["position"])) < 1e-4

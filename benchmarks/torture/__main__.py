@@ -17,7 +17,8 @@ from pathlib import Path
 from benchmarks.torture.case import Case
 from benchmarks.torture.cases import cases
 from benchmarks.torture.judge import AUTO, CUT_OFF, FAILED, Reference, Verdict, judge, reference
-from benchmarks.torture.table import table
+from benchmarks.torture.peer import judge_peer
+from benchmarks.torture.table import PEER, table
 from geocosserat.bounded import OutOfBounds, bounded
 from geocosserat.solver.integrate import LAST_RESORTS, METHODS
 
@@ -25,7 +26,7 @@ SECONDS = 60.0
 """For a case by a method; three times as long for those that must not fail, and for references."""
 
 PATIENT = (AUTO, LAST_RESORTS[0])
-EVERY = (AUTO, *METHODS, *LAST_RESORTS)
+EVERY = (AUTO, *LAST_RESORTS, *METHODS, PEER)
 
 
 def verdicts(some: Sequence[Case], methods: Sequence[str]) -> Iterator[Verdict]:
@@ -43,8 +44,9 @@ def _bounded(case: Case, method: str, known: Reference) -> Verdict:
     """One verdict; whoever hangs or breaks has failed, or been too slow if more time was not asked for."""
     patient = method in PATIENT
     seconds = 3 * SECONDS if patient else SECONDS
+    work = partial(judge_peer, case, known) if method == PEER else partial(judge, case, method, known)
     try:
-        return bounded(partial(judge, case, method, known), seconds)
+        return bounded(work, seconds)
     except OutOfBounds as error:
         return Verdict(case.name, method, FAILED if patient else CUT_OFF, str(error), seconds=seconds)
     except Exception as error:  # whatever it is: that is what is looked for

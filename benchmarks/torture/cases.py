@@ -162,7 +162,7 @@ def huge() -> Iterator[Case]:
             effects=[{"kind": "flow", "gradient": [[50, 0], [0, -50]], "velocity": [0, 0]}],
             ends={"left": FREE, "right": FREE},
             start__strain=None,
-            run__until=2.0,
+            run__until=0.5,
         ),
     )
 

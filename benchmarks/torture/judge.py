@@ -154,19 +154,19 @@ def rise(found: Solution) -> float:
 def noise(scene: Scene, found: Solution) -> float:
     """What rounding the strains may do to the energy, in units of the least relative number and of the energy at the
     start."""
-    weight = _mesh(scene, found).weight
+    weight = mesh_of(scene, found).weight
     power = np.abs(found.stress * found.turn).sum(axis=-1) @ weight
     return float(power.max() / max(found.energy[0], np.finfo(float).tiny)) + 1.0
 
 
-def _mesh(scene: Scene, found: Solution) -> Mesh:
+def mesh_of(scene: Scene, found: Solution) -> Mesh:
     """The mesh of a solution, as its nodes have it."""
     return Mesh(found.u[:: found.degree], reference_element(found.degree), scene.model.joined)
 
 
 def unmet(scene: Scene, found: Solution) -> float:
     """The sum of the drag of all nodes, relative to the largest sum of its absolute values."""
-    mesh, model = _mesh(scene, found), scene.model
+    mesh, model = mesh_of(scene, found), scene.model
     n = model.group.translations
     friction = np.array([[along(e, model.parameters, mesh.u) for e in row[:n]] for row in model.friction[:n]])
     drag = np.einsum("abn,tnb->tna", friction, found.twist[..., :n])
@@ -178,7 +178,7 @@ def unmet(scene: Scene, found: Solution) -> float:
 
 def apart(scene: Scene, one: Solution, other: Solution) -> float:
     """How far the rods are apart at the end, relative to the length."""
-    gap = position_gap(_mesh(scene, one), one.position[-1], _mesh(scene, other), other.position[-1])
+    gap = position_gap(mesh_of(scene, one), one.position[-1], mesh_of(scene, other), other.position[-1])
     return gap / scene.model.length
 
 
@@ -196,4 +196,4 @@ def _moved(case: Case, scene: Scene, changes: list[str], found: Solution) -> flo
         rotation = rotation_from_vector(np.array(turn))
     expected = found.position[-1] @ rotation.T + np.array(place)
     there = again.solution
-    return position_gap(_mesh(scene, found), expected, _mesh(scene, there), there.position[-1]) / scene.model.length
+    return position_gap(mesh_of(scene, found), expected, mesh_of(scene, there), there.position[-1]) / scene.model.length

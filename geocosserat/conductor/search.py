@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from geocosserat.conductor.simulate import Attempt, Simulator, chosen_setting, drift, unbalanced
+from geocosserat.conductor.simulate import Attempt, Simulator, chosen_setting, drift, misplaced, unbalanced
 from geocosserat.discretisation.mesh import Array, Mesh
 from geocosserat.discretisation.sampling import frictionless, left_of_friction
 from geocosserat.discretisation.semidiscrete import discretise
@@ -52,7 +52,8 @@ class Found:
 @dataclass(frozen=True, eq=False)
 class Outcome:
     """What a plan compares: the rod at the end, positions (nodes, space), empty if the run did not come to its end; how
-    far a held end strayed, a length; what the balance of energy lacks, relative to its largest term."""
+    far a held end strayed, or nodes from where strains put them, a length; what the balance of energy lacks, relative
+    to its largest term."""
 
     mesh: Mesh
     positions: Array
@@ -182,15 +183,16 @@ class _Search:
 
 
 def _left(scene: Scene, attempt: Attempt) -> Array:
-    """Where a run left the rod, as one array: how far a held end strayed and what the balance of energy lacks, in a row
-    of their own, then positions (nodes, space), if any."""
+    """Where a run left the rod, as one array: how far it strayed and what the balance of energy lacks, in a row of
+    their own, then positions (nodes, space), if any."""
     rod, trajectory = attempt.rod, attempt.trajectory
     space = rod.structure.group.space
     if not trajectory.reached:
         return np.zeros((1, space))
     positions = rod.poses(trajectory.states[-1], trajectory.times[-1]).position
     first = np.zeros((1, space))
-    first[0, :2] = drift(rod, trajectory), unbalanced(scene, attempt)
+    astray = max(drift(rod, trajectory), misplaced(rod, trajectory))
+    first[0, :2] = astray, unbalanced(scene, attempt)
     return np.concatenate([first, positions])
 
 

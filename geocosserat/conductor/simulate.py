@@ -20,8 +20,9 @@ from geocosserat.kernel.native import NativeRod
 from geocosserat.kernel.pure import NumpyRod
 from geocosserat.model.errors import InputError
 from geocosserat.model.records import Scene
+from geocosserat.planning.gap import position_gap
 from geocosserat.planning.resolution import instants
-from geocosserat.planning.settings import DEFAULT_ACCURACY, Setting
+from geocosserat.planning.settings import DEFAULT_ACCURACY, HABITS, Setting
 from geocosserat.results.progress import progress
 from geocosserat.solver.integrate import integrate
 from geocosserat.solver.legs import in_legs
@@ -110,17 +111,22 @@ class Simulator:
         with progress(scene.title) as report:
             told = _no_longer(self.seconds, report)
 
-            def integrated(method: str, done: Trajectory, kept: Callable[[Trajectory], None] = _nothing) -> Trajectory:
+            def integrated(
+                method: str, rtol: float, done: Trajectory, kept: Callable[[Trajectory], None] = _nothing
+            ) -> Trajectory:
+                of_each = rtol / setting.rtol * atol
+
                 def leg(before: Trajectory, to_come: Array, frame: Frame) -> Trajectory:
                     part, start = partial(_of_the_rest, told, before, scene.run.until), before.states[-1]
-                    return integrate(kernel, start, to_come, method, setting.rtol, atol, part, frame, self.instants)
+                    return integrate(kernel, start, to_come, method, rtol, of_each, part, frame, self.instants)
 
                 return in_legs(leg, done, times, kept)
 
             try:
-                trajectory = integrated(setting.method, done, kept)
+                trajectory = integrated(setting.method, setting.rtol, done, kept)
                 if self.rescue and not trajectory.reached:  # from here on nothing is kept: whoever goes on fails again
-                    trajectory, fell_back = rescued(trajectory, setting.method, partial(integrated, SAFE))
+                    by_safe = partial(integrated, SAFE, max(setting.rtol, HABITS[SAFE].least))
+                    trajectory, fell_back = rescued(trajectory, setting.method, by_safe)
             except _OutOfTime:
                 trajectory = replace(done, reason=f"cut off after {self.seconds:.3g} seconds")
         return Attempt(setting, rod, kernel, trajectory, text, time.perf_counter() - start, fell_back)
@@ -208,6 +214,17 @@ def drift(rod: SemiDiscrete, trajectory: Trajectory) -> float:
         return 0.0
     home = first[far] if rod.guide is None else rod.guide.at(trajectory.times[-1])[: first.shape[-1]]
     return float(np.linalg.norm(last[far] - home))
+
+
+def misplaced(rod: SemiDiscrete, trajectory: Trajectory) -> float:
+    """How far nodes are from where their strains put them, at the start or at the end; a length. Meshes on which a rod
+    turns more often in an element than its points can tell may agree with each other on a motion that is none."""
+    return max(_misplaced(rod, trajectory.states[i], float(trajectory.times[i])) for i in (0, -1))
+
+
+def _misplaced(rod: SemiDiscrete, state: Array, t: float) -> float:
+    mesh, poses = rod.finer_poses(state, t)
+    return position_gap(rod.mesh, rod.poses(state, t).position, mesh, poses.position)
 
 
 def unbalanced(scene: Scene, attempt: Attempt) -> float:

@@ -39,6 +39,12 @@ class ReferenceElement:
     running: Array
     inner: Array
 
+    def from_points(self, other: "ReferenceElement") -> Array:
+        """(p, points of the other): values here of the polynomial through values at the Gauss points of the other."""
+        q = other.degree - 1
+        share = (2 * np.arange(q + 1) + 1) / 2  # of Legendre polynomials, one over their squares
+        return _vandermonde(self.points, q) @ (share[:, None] * _vandermonde(other.points, q).T * other.weights)
+
 
 def _vandermonde(x: Array, degree: int) -> Array:
     return np.asarray(legendre.legvander(x, degree), dtype=np.float64)

@@ -1,7 +1,7 @@
 """The semi-discrete rod: a structure, a mesh, and the numbers that a kernel takes."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -10,6 +10,7 @@ from geocosserat.discretisation.course import Course, course_of
 from geocosserat.discretisation.feasible import check_feasible
 from geocosserat.discretisation.mesh import Array, Mesh, make_mesh
 from geocosserat.discretisation.pose import Poses, cross_matrix, joined, march, plane_rotation
+from geocosserat.discretisation.quadrature import reference_element
 from geocosserat.discretisation.sampling import PULL, PULL_AT_REST, along, frictionless, sample
 from geocosserat.discretisation.structure import RodStructure
 from geocosserat.discretisation.structuring import structure_of
@@ -88,12 +89,24 @@ class SemiDiscrete:
         return self._poses(states, times)
 
     def _poses(self, states: Array, times: Array | float) -> Poses:
-        position, rotation, angle = self.anchor.position, self.anchor.rotation, self.anchor.angle
+        return march(self.mesh, self.turn(states, times), *self._anchored(states, times), self.structure.base)
+
+    def _anchored(self, states: Array, times: Array | float) -> tuple[Array, Array, Array | None]:
+        """Position, rotation and angle of the end that poses are marched from."""
         if self.course is not None:
-            position, rotation, angle = self._moved(self.course.at(times))
-        elif self.structure.carried:
-            position, rotation, angle = self._moved(states[..., -2 - self.structure.carried : -2])
-        return march(self.mesh, self.turn(states, times), position, rotation, angle, self.structure.base)
+            return self._moved(self.course.at(times))
+        if self.structure.carried:
+            return self._moved(states[..., -2 - self.structure.carried : -2])
+        return self.anchor.position, self.anchor.rotation, self.anchor.angle
+
+    def finer_poses(self, state: Array, t: float) -> tuple[Mesh, Poses]:
+        """Poses of a state (size,), whose strains are polynomials in each element, marched with twice as many points;
+        and the mesh of these."""
+        mesh, p = self.mesh, self.mesh.degree
+        fine = replace(mesh, reference=reference_element(2 * p))
+        refined = fine.reference.from_points(mesh.reference)
+        turn = self.turn(state, t).reshape(-1, mesh.elements, p) @ refined.T
+        return fine, march(fine, turn.reshape(len(turn), -1), *self._anchored(state, t), self.structure.base)
 
     def _moved(self, pose: Array) -> tuple[Array, Array, Array | None]:
         """Pose of the base: its start, then this relative pose, position and angle or quaternion."""

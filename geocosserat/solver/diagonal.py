@@ -27,7 +27,7 @@ from geocosserat.solver.trajectory import Frame, Progress, Trajectory
 
 GAMMAS = {"safe": 1.0 - 0.5**0.5, "midpoint": 0.25}
 
-SOON, FAR = 20_000, 2_000_000
+SOON, FAR = 20_000, 500_000
 """After so many steps, a run whose end is so many more away at their pace will never get there."""
 
 ROUND_OFF, SETTLED = 4 * float(np.finfo(float).eps), 1e-12

@@ -173,3 +173,12 @@ def test_a_degree_below_one_is_refused() -> None:
     """There is no polynomial to take slopes of."""
     with pytest.raises(ValueError, match="expected a degree of at least 1, found 0"):
         reference_element(0)
+
+
+@pytest.mark.parametrize("degree", [1, 2, 5, 16, 32])
+def test_polynomials_are_carried_to_the_points_of_another_element(degree: int) -> None:
+    """Values at p Gauss points determine a polynomial of degree p - 1; at twice as many it has its own values."""
+    coarse, fine = reference_element(degree), reference_element(2 * degree)
+    highest = np.eye(degree)[degree - 1]
+    carried = fine.from_points(coarse) @ legendre.legval(coarse.points, highest)
+    np.testing.assert_allclose(carried, legendre.legval(fine.points, highest), atol=1e-12)

@@ -275,3 +275,23 @@ def test_a_carried_pose_is_relative_to_the_start(motion: str) -> None:
     np.testing.assert_allclose(found.rotation[:, 0], [start.rotation[0] @ relative] * 2, rtol=0, atol=1e-15)
     wanted = start.position[0] + start.rotation[0] @ offset
     np.testing.assert_allclose(found.position[:, 0], [wanted] * 2, rtol=0, atol=1e-15)
+
+
+@pytest.mark.parametrize(("bend", "angle", "apart"), [("3", 3.0, False), ("200*pi", 200 * np.pi, True)])
+def test_a_march_with_more_points_tells_whether_a_rod_turns_too_often_for_its_mesh(
+    bend: str, angle: float, apart: bool
+) -> None:
+    """Of a bow it says the same, of a hundred turns in one element something else; its strains are the same."""
+    scene = load_scene({
+        "rod": {"motion": "planar", "length": 2.0, "stiffness": [1, 1, 1], "friction": [1, 1, 1]},
+        "start": {"strain": ["1", "0", bend], "position": [1, 2], "angle": 0.4},
+        "run": {"until": 1.0},
+    })  # fmt: skip
+    made = discretise(scene, 1, 16)
+    mesh, poses = made.finer_poses(made.state, 0.0)
+    assert mesh.degree == 32
+    assert poses.angle is not None
+    assert poses.angle[-1] == pytest.approx(0.4 + 2 * angle)
+    gap = np.linalg.norm(poses.position[-1] - made.poses(made.state).position[-1])
+    assert (gap > 1e-3) == apart
+    assert apart or gap < 1e-12

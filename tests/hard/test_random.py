@@ -22,7 +22,9 @@ def _power(low: float, high: float) -> st.SearchStrategy[float]:
 
 
 @st.composite
-def rods(draw: st.DrawFn, motions: tuple[str, ...] = ("planar",), ends: tuple[str, ...] = ("clamped",)) -> dict[str, Any]:
+def rods(
+    draw: st.DrawFn, motions: tuple[str, ...] = ("planar",), ends: tuple[str, ...] = ("clamped",)
+) -> dict[str, Any]:
     """A rod whose numbers lie decades apart, bent at the start."""
     motion = draw(st.sampled_from(motions))
     space, turns = (2, 1) if motion == "planar" else (3, 3)
