@@ -61,15 +61,20 @@ def load_checkpoint(folder: Path) -> Checkpoint:
     Raises FileError if there is none or it is damaged.
     """
     path = folder / NAME
+    wanted = "a checkpoint to go on from"
     try:
         sealed = path.read_bytes()
-        if not seal.intact(sealed):
-            raise ValueError("its checksum differs: it was cut short, damaged or changed")
-        return _read(sealed)
     except FileNotFoundError:
-        raise FileError(path, "a checkpoint to go on from", "none", _HINT) from None
-    except (OSError, ValueError, KeyError, TypeError, NotImplementedError, RuntimeError, zipfile.BadZipFile) as error:
-        raise FileError(path, "a checkpoint to go on from", f"a damaged file ({error})", _HINT) from None
+        raise FileError(path, wanted, "none", _HINT) from None
+    except OSError as error:
+        raise FileError(path, wanted, error.strerror or str(error), _HINT) from None
+    if not seal.intact(sealed):
+        raise FileError(path, wanted, "a damaged file (its checksum differs: cut short or changed)", _HINT)
+    try:
+        return _read(sealed)
+    except Exception as error:  # the library may make anything of a file that was written to do harm
+        said = " ".join(str(error).split())[:200] or type(error).__name__
+        raise FileError(path, wanted, f"a damaged file ({said})", _HINT) from None
 
 
 def _read(sealed: bytes) -> Checkpoint:
