@@ -242,7 +242,8 @@ def _integrate(
             reason = f"{name} stopped at t = {now.t:.6g}: no step is short enough; {SINGULAR}"
         elif hope.lost(now.tries, fraction):
             reason = f"{name} stopped at t = {now.t:.6g}: {now.tries} steps did not reach the end"
-    return Trajectory(times[:done].copy(), states[:done], now.rates, now.jacobians, now.tries, done == len(times), reason)
+    reached = done == len(times)
+    return Trajectory(times[:done].copy(), states[:done], now.rates, now.jacobians, now.tries, reached, reason)
 
 
 safe, midpoint = (partial(_integrate, name) for name in GAMMAS)
