@@ -73,7 +73,7 @@ def test_c_and_numpy_agree_to_round_off(case: Case) -> None:
 @pytest.mark.parametrize("case", cases(("c",), ("planar everything",)), ids=str)
 @pytest.mark.parametrize("bend", [0.0, -2.0, 9.0, -300.0, 4e4, 3e6])
 def test_frames_may_turn_however_far(case: Case, bend: float) -> None:
-    """Through all quadrants, many turns, and so many that C leaves cosines to its library; but for what is lost of the
+    """Through all quadrants and many turns, also where C leaves cosines to its library; but for what is lost of the
     angle itself."""
     y, points = state(case, 5), case.elements * case.degree
     y[2 * points : 3 * points] += bend
