@@ -23,9 +23,11 @@ from geocosserat.bounded import OutOfBounds, bounded
 from geocosserat.solver.integrate import LAST_RESORTS, METHODS
 
 SECONDS = 60.0
-"""For a case by a method; three times as long for those that must not fail, and for references."""
+"""For a case by a method; three times as long by those that must not fail, and for references."""
 
 PATIENT = (AUTO, LAST_RESORTS[0])
+"""The default, which must come to an end in that time, and the safe method, which may be slow and is then cut off."""
+
 EVERY = (AUTO, *LAST_RESORTS, *METHODS, PEER)
 
 
@@ -41,14 +43,14 @@ def verdicts(some: Sequence[Case], methods: Sequence[str]) -> Iterator[Verdict]:
 
 
 def _bounded(case: Case, method: str, known: Reference) -> Verdict:
-    """One verdict; whoever hangs or breaks has failed, or been too slow if more time was not asked for."""
+    """One verdict; what breaks has failed, and the default if it hangs; others are cut off."""
     patient = method in PATIENT
     seconds = 3 * SECONDS if patient else SECONDS
     work = partial(judge_peer, case, known) if method == PEER else partial(judge, case, method, known)
     try:
         return bounded(work, seconds)
     except OutOfBounds as error:
-        return Verdict(case.name, method, FAILED if patient else CUT_OFF, str(error), seconds=seconds)
+        return Verdict(case.name, method, FAILED if method == AUTO else CUT_OFF, str(error), seconds=seconds)
     except Exception as error:  # whatever it is: that is what is looked for
         return Verdict(case.name, method, FAILED, f"{type(error).__name__}: {error}")
 

@@ -15,6 +15,9 @@ from dataclasses import dataclass
 SHARE = 0.4
 """Of the accuracy, for what is refined: half for space and half for time, less a margin."""
 
+ROUGH = 0.1
+"""Of the length: a mesh that errs by more than that has missed the motion."""
+
 FIRST_DECADES, MOST_DECADES, MOST_GROWTH, MOST_RUNS = 1.5, 4.0, 4.0, 12
 
 
@@ -104,6 +107,7 @@ def plan(accuracy: float, choice: Choice, errors: Errors, first: int = 0) -> Gen
             return Verdict(kept if estimate is None else before, estimate, False)
         if comparable:
             gap, decades, growth = errors.gap(before, kept), new.decades - old.decades, choice.growth(old, new)
+            coarse = 0.0 if growth == 1.0 else gap  # the error in space of the mesh before
             if growth == 1.0:
                 in_time = _finer_in_time(gap, decades)
                 in_space = in_space if in_space.known else Guess(gap, gap)  # no finer mesh exists
@@ -117,7 +121,10 @@ def plan(accuracy: float, choice: Choice, errors: Errors, first: int = 0) -> Gen
                     asked += 1
                     if (yield Request(Level(old.size, new.decades), whole=False)):
                         in_time = _finer_in_time(errors.gap(before, asked - 1), decades)
-                        in_space = _finer_in_space(errors.gap(asked - 1, kept), growth, in_time.cautious)
+                        coarse = errors.gap(asked - 1, kept)
+                        in_space = _finer_in_space(coarse, growth, in_time.cautious)
+            if coarse > ROUGH and new.decades < choice.finest(size):
+                in_time = Guess()  # steps on a mesh that misses the motion tell nothing of those on one that does not
             in_space, in_time = in_space.at_least(errors.in_space(kept)), in_time.at_least(errors.in_time(kept))
             estimate = in_space.cautious + in_time.cautious
             if estimate <= accuracy:

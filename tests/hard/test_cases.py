@@ -7,7 +7,7 @@ import pytest
 from benchmarks.torture.__main__ import PATIENT, verdicts
 from benchmarks.torture.case import Case
 from benchmarks.torture.cases import FAMILIES
-from benchmarks.torture.judge import REFUSED, SURVIVED
+from benchmarks.torture.judge import FAILED, SURVIVED
 
 BY_NAME = {case.name: case for family in FAMILIES for case in family()}
 QUICK = (
@@ -21,7 +21,7 @@ def _failures(cases: list[Case], methods: tuple[str, ...]) -> list[str]:
     return [
         f"{v.case}, {v.method}: {v.outcome}: {v.why}"
         for v in verdicts(cases, methods)
-        if v.outcome not in (SURVIVED, REFUSED) or (v.outcome == SURVIVED and v.case in REFUSALS)
+        if v.outcome == FAILED or (v.outcome == SURVIVED and v.case in REFUSALS)
     ]
 
 

@@ -124,11 +124,11 @@ def test_a_refusal_is_one_only_with_a_reason(monkeypatch: pytest.MonkeyPatch) ->
 
 
 def test_what_hangs_or_breaks_has_failed(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The default and the safe method must come to an end; others may be too slow. An exception is a failure of all."""
+    """The default must come to an end; others may be too slow. An exception is a failure of all."""
     monkeypatch.setattr(torture, "SECONDS", 0.3)
     monkeypatch.setattr(torture, "judge", lambda *_: time.sleep(60))
     outcomes = [v.outcome for v in torture.verdicts([CASE], ["auto", "safe", "bdf"])]
-    assert outcomes == [FAILED, FAILED, CUT_OFF]
+    assert outcomes == [FAILED, CUT_OFF, CUT_OFF]
 
     def broken(*_: Any) -> Verdict:
         raise ZeroDivisionError("a bug")
