@@ -2,7 +2,7 @@
 # Any POSIX make, Python 3.11 or newer, Linux or macOS. Installing compiles nothing; a C compiler makes runs faster.
 .POSIX:
 .SUFFIXES:
-.PHONY: help demo test bench generated errata clean
+.PHONY: help demo test bench faults fuzz sanitize generated errata clean
 
 PYTHON = python3
 OUT = out
@@ -14,6 +14,9 @@ help:
 	@echo "make demo       install into .venv, simulate examples/helix.toml, write numbers and a picture to $(OUT)/demo"
 	@echo "make test       lint, types and tests; make test TESTS='-m slow' runs those that take long"
 	@echo "make bench      time and accuracy, measured"
+	@echo "make faults     end, starve and damage runs at random, and count what is lost (docs/faults.md)"
+	@echo "make fuzz       random scenes, laws, solutions and checkpoints"
+	@echo "make sanitize   tests on kernels compiled with gcc's sanitisers"
 	@echo "make generated  write the kernels in generated/ again"
 	@echo "make errata     judge the paper and write docs/errata.md again"
 	@echo "make clean      remove .venv, $(OUT) and all caches"
@@ -29,6 +32,16 @@ test: .venv/tools
 
 bench: .venv/peers
 	$(BIN)/python -m benchmarks
+
+faults: .venv/tools
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m benchmarks.faults
+
+fuzz: .venv/tools
+	$(BIN)/python -m benchmarks.fuzz_scenes
+	$(BIN)/python -m benchmarks.fuzz_laws
+
+sanitize: .venv/tools
+	$(BIN)/python -m benchmarks.sanitize
 
 generated: .venv/locked
 	$(BIN)/python -m geocosserat.codegen.catalogue
