@@ -98,10 +98,10 @@ def _run(scene: Scene, backend: str, folder: Path | None, resume: bool) -> Run:
             raise
         except FileError as error:
             raise FileError(error.file, error.expected, error.found, f"{error.hint}{_left_by(keeper)}") from None
+        keeper.finish()
         from geocosserat.results.picture import picture  # last: whatever happens to it, the results are there
 
         picture(solution, files[1])
-        keeper.finish()
     return Run(solution, fields)
 
 
