@@ -2,7 +2,7 @@
 # Any POSIX make, Python 3.11 or newer, Linux or macOS. Installing compiles nothing; a C compiler makes runs faster.
 .POSIX:
 .SUFFIXES:
-.PHONY: help demo test bench torture generated errata clean
+.PHONY: help demo test bench torture faults fuzz sanitize generated errata clean
 
 PYTHON = python3
 OUT = out
@@ -15,6 +15,9 @@ help:
 	@echo "make test       lint, types and tests; make test TESTS='-m slow' runs those that take long"
 	@echo "make bench      time and accuracy, measured"
 	@echo "make torture    scenes that should break a program, by every method: a table, and $(OUT)/torture.jsonl"
+	@echo "make faults     end, starve and damage runs at random, and count what is lost (docs/faults.md)"
+	@echo "make fuzz       random scenes, laws, solutions and checkpoints"
+	@echo "make sanitize   tests on kernels compiled with gcc's sanitisers"
 	@echo "make generated  write the kernels in generated/ again"
 	@echo "make errata     judge the paper and write docs/errata.md again"
 	@echo "make clean      remove .venv, $(OUT) and all caches"
@@ -33,6 +36,16 @@ bench: .venv/peers
 
 torture: .venv/installed
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m benchmarks.torture --lines $(OUT)/torture.jsonl
+
+faults: .venv/tools
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m benchmarks.faults
+
+fuzz: .venv/tools
+	$(BIN)/python -m benchmarks.fuzz_scenes
+	$(BIN)/python -m benchmarks.fuzz_laws
+
+sanitize: .venv/tools
+	$(BIN)/python -m benchmarks.sanitize
 
 generated: .venv/locked
 	$(BIN)/python -m geocosserat.codegen.catalogue

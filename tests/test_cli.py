@@ -15,6 +15,9 @@ from click.testing import CliRunner, Result
 
 import geocosserat
 from geocosserat.cli import main
+from geocosserat.conductor import run as running
+from geocosserat.locks import lock
+from geocosserat.results.errors import FileError
 from tests.model.refusals import REFUSALS, SPATIAL_REFUSALS
 from tests.model.scenes import PLANAR, SPATIAL, changed
 from tests.referee import paper
@@ -228,9 +231,11 @@ def test_a_folder_that_fills_up_is_one_message(
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr("os.fsync", full)
+    monkeypatch.setattr("geocosserat.results.checkpoint.Keeper.EVERY", 1000.0)
     line = refused(call("run", cantilever, *QUICK, "--out", str(tmp_path)))
     assert "No space left on device" in line
     assert "solution.nc" in line
+    assert "what was computed is lost" in line
     assert list(tmp_path.iterdir()) == []
 
 
@@ -377,6 +382,88 @@ def test_resuming_nothing_is_refused_in_one_line(cantilever: str, tmp_path: Path
     line = refused(program("run", cantilever, *QUICK, "--resume", "--out", str(tmp_path / "none")))
     assert "expected a checkpoint to go on from, found none" in line
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
+@pytest.mark.parametrize("words", [["--version"], ["derive"], ["run", *QUICK, "--json"], ["run", *QUICK]], ids=" ".join)
+def test_output_that_goes_to_a_full_disk_is_one_message(words: list[str], cantilever: str) -> None:
+    """What was computed cannot be told; that is said, with code 2."""
+    command = [sys.executable, "-m", "geocosserat", *words, *([] if words == ["--version"] else [cantilever])]
+    with open("/dev/full", "w") as full:
+        done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, cwd=ROOT, timeout=120)
+    assert done.returncode == 2
+    (line,) = done.stderr.splitlines()
+    assert line.startswith("geocosserat: expected files and output that can be written, found No space left on device")
+
+
+def test_without_standard_output_nothing_is_told_and_nothing_is_wrong(cantilever: str) -> None:
+    """As a job may be started, with it closed."""
+    command = f"exec {sys.executable} -m geocosserat derive {cantilever} >&-"
+    done = subprocess.run(command, shell=True, stderr=subprocess.PIPE, text=True, cwd=ROOT, timeout=120)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+@pytest.mark.parametrize("words", [["run", *QUICK], ["generate", "--backend", "c"], ["equilibrium"]], ids=" ".join)
+def test_a_folder_that_another_run_writes_to_is_refused(words: list[str], cantilever: str, tmp_path: Path) -> None:
+    """Even with --overwrite, and it stays as it is."""
+    command, *more = words
+    with lock(tmp_path):
+        message = refused(call(command, cantilever, *more, "--out", str(tmp_path), "--overwrite"))
+    assert message == (
+        f"--out: expected a folder that nobody is writing to, found {tmp_path}, in use; wait, or choose another --out"
+    )
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_what_a_program_left_that_was_ended_while_it_wrote_is_removed(cantilever: str, tmp_path: Path) -> None:
+    """By the next run into the folder; files of other names are nobody's business."""
+    for name in (".0123456789ab.part", ".0123456789ab.party", "0123456789ab.part"):
+        (tmp_path / name).write_text("half")
+    assert call("run", cantilever, *QUICK, "--out", str(tmp_path)).exit_code == 0
+    assert {path.name for path in tmp_path.iterdir()} == {
+        ".0123456789ab.party", "0123456789ab.part", "solution.nc", "picture.png", "summary.json"
+    }  # fmt: skip
+
+
+def test_names_of_files_cannot_write_on_the_terminal(cantilever: str, tmp_path: Path) -> None:
+    """They are shown as Python writes them."""
+    message = refused(call("run", cantilever, "--out", str(tmp_path / "\x1b[31m\n"), "--resume"))
+    assert r"\x1b[31m\n/checkpoint.npz: expected a checkpoint" in message
+
+
+def test_a_disk_that_is_full_at_a_checkpoint_does_not_end_a_run(
+    cantilever: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It says so, and comes to its end: there may be room by then."""
+
+    def full(*_: object) -> None:
+        raise FileError(tmp_path / "checkpoint.npz", "room", "none", "make some")
+
+    monkeypatch.setattr("geocosserat.results.checkpoint.save_checkpoint", full)
+    monkeypatch.setattr("geocosserat.results.checkpoint.Keeper.EVERY", 0.0)
+    done = call("run", cantilever, *QUICK, "--out", str(tmp_path))
+    assert done.exit_code == 0
+    assert "no checkpoint could be written" in done.stderr
+    assert (tmp_path / "solution.nc").exists()
+
+
+def test_a_run_whose_results_do_not_fit_can_be_completed_when_there_is_room(
+    cantilever: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Nothing that was computed is lost."""
+    with monkeypatch.context() as patched:
+        def full(*_: object) -> None:
+            raise FileError(tmp_path / "solution.nc", "room", "none", "make some")
+
+        patched.setattr(running, "save", full)
+        assert refused(call("run", cantilever, *QUICK, "--out", str(tmp_path))).endswith(
+            "make some, and go on with --resume: what was computed is kept"
+        )
+    assert [path.name for path in tmp_path.iterdir()] == ["checkpoint.npz"]
+    steps = []
+    monkeypatch.setattr("geocosserat.conductor.simulate.integrate", lambda *_: steps.append(1))
+    assert call("run", cantilever, *QUICK, "--out", str(tmp_path), "--resume").exit_code == 0
+    assert steps == []
 
 
 @pytest.fixture

@@ -17,8 +17,8 @@ from pathlib import Path
 from geocosserat.__main__ import main
 from geocosserat.conductor import run as running
 from geocosserat.passivity.check import check as check_law  # imported once, not in every process  # noqa: F401
-from geocosserat.results import picture  # noqa: F401
-from geocosserat.results.atomic import PART
+from geocosserat.results import picture as pictures
+from geocosserat.results.atomic import PART, write_bytes
 from geocosserat.results.checkpoint import NAME as CHECKPOINT
 from geocosserat.results.checkpoint import Keeper
 from geocosserat.results.netcdf import load
@@ -32,9 +32,14 @@ PATIENCE = 300.0
 """Seconds after which a program counts as hanging."""
 
 
+def _blank(_: Solution, path: str | os.PathLike[str]) -> Path:
+    return write_bytes(path, b"a picture")
+
+
 @dataclass(frozen=True)
 class Case:
-    """A scene and how it is run. hurried: with legs of few steps and a checkpoint after each, as if it took hours."""
+    """A scene and how it is run. hurried: with legs of few steps and a checkpoint after each, as if it took hours, and
+    without drawing, which would take most of the time."""
 
     scene: str
     settings: tuple[str, ...] = ()
@@ -52,6 +57,7 @@ class Case:
         if self.hurried:
             legs.enough = lambda size: HURRIED_LEG  # type: ignore[assignment]
             Keeper.EVERY = Keeper.SHARE = 0.0
+            pictures.picture = _blank
 
 
 def _fixed(elements: int, degree: int, rtol: float, method: str, *more: str) -> tuple[str, ...]:

@@ -122,7 +122,8 @@ def killed(
             if (out / running.SOLUTION).exists() and differences(load(out / running.SOLUTION), expected.solution):
                 return Outcome("ended", f"{case.name}: a wrong solution was left")
         if code == 0:
-            return Outcome("came to its end before", wrong_with(out, expected.solution))
+            what = "came to its end from a checkpoint" if resumed else "came to its end before"
+            return Outcome(what, wrong_with(out, expected.solution))
         more = going_on(out) if out.exists() else []
         code = finished([*case.arguments(out), *more], ground.said, case.prepare)
         if code:
@@ -291,7 +292,7 @@ def damaged_solution(ground: Ground, chance: random.Random) -> Outcome:
     return Outcome("read", "a damaged solution was read as a good one")
 
 
-def _checkpoint(ground: Ground) -> Path:
+def ended_run(ground: Ground) -> Path:
     """A folder with the checkpoint of a run that was ended."""
     folder = ground.folder / "interrupted"
     while not (folder / CHECKPOINT).exists():
@@ -305,7 +306,7 @@ def _checkpoint(ground: Ground) -> Path:
 
 def damaged_checkpoint(ground: Ground, chance: random.Random) -> Outcome:
     """A run does not go on from a damaged checkpoint, says so, and leaves it."""
-    with ground.new(_checkpoint(ground)) as out:
+    with ground.new(ended_run(ground)) as out:
         path = out / CHECKPOINT
         bad = damage(path.read_bytes(), chance)
         path.write_bytes(bad)

@@ -14,7 +14,7 @@ from geocosserat.results.atomic import PART
 @contextmanager
 def claimed(folder: Path | None, overwrite: bool, names: Sequence[str]) -> Iterator[None]:
     """Makes sure, before anything is computed, that results can be written and that none are lost; keeps others from
-    writing there meanwhile; removes the folder if nothing was written. Does nothing without a folder.
+    writing there meanwhile; removes a folder that it made if nothing was written. Does nothing without a folder.
 
     Raises InputError.
     """
@@ -23,6 +23,7 @@ def claimed(folder: Path | None, overwrite: bool, names: Sequence[str]) -> Itera
         return
     with ExitStack() as stack:
         try:
+            made = not folder.exists()
             folder.mkdir(parents=True, exist_ok=True)
             alone = stack.enter_context(lock(folder))
             writable = os.access(folder, os.W_OK | os.X_OK)
@@ -39,8 +40,9 @@ def claimed(folder: Path | None, overwrite: bool, names: Sequence[str]) -> Itera
                 _tidy(folder)
             yield
         except BaseException:
-            with suppress(OSError):  # it is not empty
-                folder.rmdir()
+            if made:
+                with suppress(OSError):  # it is not empty
+                    folder.rmdir()
             raise
 
 

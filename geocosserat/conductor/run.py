@@ -93,11 +93,25 @@ def _run(scene: Scene, backend: str, folder: Path | None, resume: bool) -> Run:
     if folder is not None:
         try:
             _write(solution, files, fields)
-        except (FileError, KeyboardInterrupt):
+        except KeyboardInterrupt:
             keeper.save()
             raise
+        except FileError as error:
+            raise FileError(error.file, error.expected, error.found, f"{error.hint}{_left_by(keeper)}") from None
         keeper.finish()
+        from geocosserat.results.picture import picture  # last: whatever happens to it, the results are there
+
+        picture(solution, files[1])
     return Run(solution, fields)
+
+
+def _left_by(keeper: Keeper) -> str:
+    """What is left of a run whose results could not be written."""
+    try:
+        keeper.save()
+    except FileError:
+        return ": what was computed is lost"
+    return ", and go on with --resume: what was computed is kept"
 
 
 def _said_of(law: Law) -> dict[str, Any]:
@@ -126,6 +140,3 @@ def _write(solution: Solution, files: Sequence[Path], fields: Mapping[str, Any])
         with suppress(OSError):
             file.unlink()
     write_summary(fields, files[2])
-    from geocosserat.results.picture import picture  # last: whatever happens to it, the results are there
-
-    picture(solution, files[1])

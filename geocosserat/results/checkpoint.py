@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 import time
 import zipfile
 from collections.abc import Callable
@@ -138,7 +139,7 @@ class Keeper:
         if self.resumed is not None:
             self.number, self.counts, self.states = self.resumed.number, self.resumed.counts, self.resumed.states
             self.ends = list(self.resumed.ends)
-        self.saved, self.pause = time.monotonic(), self.EVERY
+        self.saved, self.pause = math.inf, self.EVERY
 
     def begin(self, number: int, start: Array, times: Array) -> Trajectory:
         """What is there already of this run from `start` (size,) through `times` (frames,); at least the start."""
@@ -149,6 +150,7 @@ class Keeper:
             expected = f"up to {len(times)} states of {len(start)} numbers"
             raise InputError(expected, f"{len(states)} of {states.shape[1]}", _HINT, key="--resume")
         self.number, self.counts, self.states = number, counts, states
+        self.saved = min(self.saved, time.monotonic())  # before, there was nothing to lose
         return Trajectory(times[: len(states)].copy(), states, *counts, reached=len(states) == len(times))
 
     def holds(self, number: int) -> bool:
@@ -171,24 +173,20 @@ class Keeper:
         self._now_and_then()
 
     def _now_and_then(self) -> None:
-        if time.monotonic() - self.saved > self.pause:
-            self.save()
+        start = time.monotonic()
+        if start - self.saved > self.pause:
+            try:
+                self.save()
+            except FileError as error:
+                self.tell(f"no checkpoint could be written: {error}")
+            self.saved = time.monotonic()
+            self.pause = max(self.EVERY, self.SHARE * (self.saved - start))
 
-    def save(self) -> bool:
-        """Writes the checkpoint now; says so where it cannot, and whether it could."""
-        if self.folder is None:
-            return False
-        start, written = time.monotonic(), True
-        try:
-            save_checkpoint(
-                Checkpoint(self.key, self.number, self.counts, self.states, tuple(self.ends)), self.folder
-            )
-        except FileError as error:
-            self.tell(f"no checkpoint could be written: {error}")
-            written = False
-        self.saved = time.monotonic()
-        self.pause = max(self.EVERY, self.SHARE * (self.saved - start))
-        return written
+    def save(self) -> None:
+        """Writes the checkpoint now. Raises FileError where it cannot."""
+        if self.folder is not None:
+            content = Checkpoint(self.key, self.number, self.counts, self.states, tuple(self.ends))
+            save_checkpoint(content, self.folder)
 
     def finish(self) -> None:
         """The run is complete: nothing to go on from."""

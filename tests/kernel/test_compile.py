@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import stat
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -16,8 +17,9 @@ from geocosserat.conductor.kernels import kernel_text
 from geocosserat.conductor.run import run
 from geocosserat.discretisation.semidiscrete import discretise
 from geocosserat.kernel import compile as compiling
-from geocosserat.kernel.compile import CompileError, compile_c, compiler
+from geocosserat.kernel.compile import CompileError, compile_c, compiler, opened
 from geocosserat.kernel.load import load
+from geocosserat.locks import lock
 from tests.discretisation.rods import changed
 
 ROOT = Path(__file__).parents[2]
@@ -168,6 +170,65 @@ def test_a_library_that_was_cut_off_is_made_again(own: Path, c_compiler: str, da
     k, out = load(kernel_text(r.structure), r, "c"), np.full(len(r.state), np.nan)
     k.rate(0.0, r.state, out)
     np.testing.assert_array_equal(out, 0)
+
+
+def _flipped(path: Path) -> bytes:
+    """The whole library, with one bit of its code changed."""
+    content = bytearray(path.read_bytes())
+    content[content.index(b"\x00rod_rate") // 2] ^= 1
+    return bytes(content)
+
+
+def test_a_library_with_one_wrong_bit_is_never_opened(own: Path, c_compiler: str) -> None:
+    """It would still load, and compute something else: its name says what is in it."""
+    source = (ROOT / "generated" / "planar_clamped_free.c").read_text()
+    path = compile_c(source, 2)
+    good, bad = path.read_bytes(), _flipped(path)
+    opened_with: list[bytes] = []
+    path.write_bytes(bad)
+    opened(lambda library: opened_with.append(library.read_bytes()), source, 2)
+    assert opened_with == [good]
+    assert [found.read_bytes() for found in own.iterdir()] == [good]
+
+
+@pytest.mark.parametrize("mode", [0o720, 0o702, 0o777])
+def test_a_library_that_others_may_have_written_is_never_opened(own: Path, c_compiler: str, mode: int) -> None:
+    """Though it is as it should be: it need not stay so until it is opened."""
+    path = compile_c(SOURCE, 1)
+    path.chmod(mode)
+    assert stat.S_IMODE(compile_c(SOURCE, 1).stat().st_mode) == 0o700
+
+
+def test_a_library_of_somebody_else_is_never_opened(
+    own: Path, c_compiler: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Nor a link to one."""
+    path = compile_c(SOURCE, 1)
+    elsewhere = own.parent / "library"
+    path.rename(elsewhere)
+    path.symlink_to(elsewhere)
+    assert not compile_c(SOURCE, 1).is_symlink()
+    status = os.fstat
+    other = lambda file: os.stat_result((*status(file)[:4], os.getuid() + 1, *status(file)[5:]))  # noqa: E731
+    monkeypatch.setattr("geocosserat.kernel.places.os.fstat", other)
+    before = path.stat().st_mtime_ns
+    assert compile_c(SOURCE, 1).stat().st_mtime_ns != before
+
+
+def test_what_a_program_left_that_was_ended_is_removed_and_what_others_are_making_is_not(
+    own: Path, c_compiler: str
+) -> None:
+    """The next one that compiles tidies up, unless somebody is at work."""
+    compile_c(SOURCE, 1)
+    (own / ".part-folder").mkdir()
+    (own / ".part-folder" / "rod.c").write_text("half")
+    (own / ".part-file").write_text("half")
+    with lock(own, shared=True):
+        compile_c(SOURCE, 2)
+        assert (own / ".part-folder").exists()
+    compile_c(SOURCE, 3)
+    assert not list(own.glob(".part-*"))
+    assert len(list(own.glob("*.so"))) == 3
 
 
 def test_a_library_that_cannot_be_loaded_is_said_in_words(

@@ -74,6 +74,23 @@ def test_a_damaged_kernel_is_generated_again_and_never_used(own: Path, damage: s
     assert kernel_text(STRUCTURE).origin == "cache"
 
 
+@pytest.mark.parametrize("mode", [0o620, 0o602])
+def test_a_kernel_that_others_may_have_written_is_never_used(own: Path, mode: int) -> None:
+    """Its text is run; a checksum that anybody can make is no proof of who wrote it."""
+    kernel_text(STRUCTURE)
+    (own / f"{NAME}.json").chmod(mode)
+    assert find(NAME) is None
+    assert kernel_text(STRUCTURE).origin == "generated"
+    assert kernel_text(STRUCTURE).origin == "cache"
+
+
+def test_a_file_that_is_nested_deeply_is_damage(own: Path) -> None:
+    """Of which JSON makes another error."""
+    kernel_text(STRUCTURE)
+    (own / f"{NAME}.json").write_text("[" * 100_000)
+    assert find(NAME) is None
+
+
 def test_the_kernel_of_another_rod_is_not_taken_for_this_one(own: Path) -> None:
     """A file of the cache under another name is damage too."""
     kernel_text(STRUCTURE)

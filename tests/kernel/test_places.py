@@ -5,11 +5,12 @@ from __future__ import annotations
 import os
 import stat
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from geocosserat.kernel.places import cache_folder, write_whole
+from geocosserat.kernel.places import cache_folder, own_bytes, write_whole
 
 
 @pytest.fixture
@@ -68,6 +69,22 @@ def test_a_temporary_folder_prepared_by_somebody_else_is_refused(
     trap.chmod(0o777)
     with pytest.raises(PermissionError, match=r"writable by nobody else; .*set GEOCOSSERAT_CACHE to another folder"):
         cache_folder()
+
+
+def test_a_link_in_the_temporary_folder_is_refused(elsewhere: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Anybody can put one there, to a folder of this user's."""
+    monkeypatch.setenv("GEOCOSSERAT_CACHE", "/dev/null/nowhere")
+    (elsewhere / "tmp" / f"geocosserat-{os.getuid()}").symlink_to(elsewhere / "home")
+    with pytest.raises(PermissionError, match=r"to be no link; set GEOCOSSERAT_CACHE"):
+        cache_folder()
+
+
+@pytest.mark.parametrize("make", [os.mkfifo, os.mkdir, lambda path: os.symlink("/dev/zero", path)], ids=str)
+def test_only_plain_files_are_read(tmp_path: Path, make: Callable[[Path], None], patience: None) -> None:
+    """Not pipes, on which one waits, nor links, nor devices without an end."""
+    make(tmp_path / "thing")
+    with pytest.raises(OSError):  # noqa: PT011
+        own_bytes(tmp_path / "thing")
 
 
 def test_where_no_folder_can_be_made_the_temporary_one_serves(

@@ -1,0 +1,75 @@
+"""All compiled code under the sanitisers of the compiler: python -m benchmarks.sanitize [what pytest is to run].
+
+Kernels and integrators are compiled with AddressSanitizer and UndefinedBehaviorSanitizer and the tests run on them; the
+first access outside of its array, use after it was freed, or undefined operation ends the run with a report. By default
+the tests of kernels, solvers, statics and physics; Python itself and its libraries are not instrumented, and what they
+leave allocated is not looked at. Whether the sanitisers are at work at all is tried first, with code that is wrong.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+FLAGS = "-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer -g"
+RUNTIMES = ("libasan.so", "libubsan.so")
+DEFAULT = ("tests/kernel", "tests/solver", "tests/statics", "tests/physics", "tests/codegen/test_take_away.py")
+WRONG = {
+    "outside of its array": ("double f(int n) { double *a = calloc(4, 8); return a[n]; }", 4),
+    "undefined": ("double f(int n) { return (double)(n + 2147483647); }", 1),
+}
+"""Code with a fault that the sanitisers should report, and what to call it with."""
+
+
+def environment(tool: str) -> dict[str, str]:
+    """That in which Python loads sanitised libraries."""
+    found = [subprocess.check_output([tool, f"-print-file-name={name}"], text=True).strip() for name in RUNTIMES]
+    return {
+        **os.environ,
+        "CC": f"{tool} {FLAGS}",
+        "LD_PRELOAD": " ".join(found),
+        "ASAN_OPTIONS": "detect_leaks=0:abort_on_error=1",
+        "UBSAN_OPTIONS": "print_stacktrace=1",
+        "OPENBLAS_NUM_THREADS": "1",
+    }
+
+
+def unnoticed(tool: str) -> list[str]:
+    """Faults that the sanitisers do not report in a library compiled and loaded as kernels are."""
+    missed = []
+    for name, (code, argument) in WRONG.items():
+        program = (
+            "import ctypes; from geocosserat.kernel.compile import compile_c; "
+            f"f = ctypes.CDLL(str(compile_c('#include <stdlib.h>\\n{code}\\n'))).f; f.argtypes = [ctypes.c_int]; "
+            f"print('ran', f(0), flush=True); f({argument}); print('unnoticed')"
+        )
+        with tempfile.TemporaryDirectory() as cache:
+            used = {**environment(tool), "GEOCOSSERAT_CACHE": cache}
+            command = [sys.executable, "-c", program]
+            done = subprocess.run(command, env=used, capture_output=True, text=True, check=False)
+        reported = "AddressSanitizer" in done.stderr or "runtime error" in done.stderr
+        if "ran" not in done.stdout or "unnoticed" in done.stdout or not reported:
+            missed.append(f"{name}: {done.stderr[-300:]}")
+    return missed
+
+
+def main() -> None:
+    """Runs the tests."""
+    tool = shutil.which("gcc")
+    if tool is None:
+        sys.exit("expected gcc on the path, with its sanitisers, found none; install it")
+    missed = unnoticed(tool)
+    if missed:
+        sys.exit("expected gcc's sanitisers to report faults, found some that went unnoticed: " + "; ".join(missed))
+    root = Path(__file__).parents[1]
+    asked = sys.argv[1:] or [*DEFAULT]
+    command = [sys.executable, "-m", "pytest", *asked]
+    sys.exit(subprocess.run(command, cwd=root, env=environment(tool), check=False).returncode)
+
+
+if __name__ == "__main__":
+    main()
