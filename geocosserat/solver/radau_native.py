@@ -53,7 +53,7 @@ PAUSED, NO_ROOM = 1, -5
 REASONS = {
     -1: f"the error test failed however small the step; {SINGULAR}",
     -2: f"Newton's method failed however small the step; {SINGULAR}",
-    -3: "the rate is not finite however small the step",
+    -3: f"the rate is not finite however small the step; {SINGULAR}",
     -4: "the constraints have no solution",
 }
 AT_START = {-3: "the rate is not finite at the start", -4: REASONS[-4]}
