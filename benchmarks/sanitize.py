@@ -17,7 +17,7 @@ from pathlib import Path
 
 FLAGS = "-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer -g"
 RUNTIMES = ("libasan.so", "libubsan.so")
-DEFAULT = ("tests/kernel", "tests/solver", "tests/statics", "tests/physics", "tests/codegen/test_take_away.py")
+DEFAULT = ("tests/kernel", "tests/solver", "tests/statics", "tests/physics")
 WRONG = {
     "outside of its array": ("double f(int n) { double *a = calloc(4, 8); return a[n]; }", 4),
     "undefined": ("double f(int n) { return (double)(n + 2147483647); }", 1),
