@@ -14,13 +14,11 @@ from geocosserat.model.records import Scene
 
 @dataclass(frozen=True)
 class Case:
-    """A scene that is hard in one way. family: which; refusal: words that a refusal must have, where nothing else than
-    a refusal is right; bound: on the seconds of a run by a method that calls no C."""
+    """A scene that is hard in one way. family: which."""
 
     name: str
     family: str
     scene: Mapping[str, Any]
-    refusal: str = ""
 
     def read(self) -> Scene:
         """The scene as the program reads it. Raises InputError."""
