@@ -79,7 +79,9 @@ def test_a_link_in_the_temporary_folder_is_refused(elsewhere: Path, monkeypatch:
         cache_folder()
 
 
-@pytest.mark.parametrize("make", [os.mkfifo, os.mkdir, lambda path: os.symlink("/dev/zero", path)], ids=["pipe", "folder", "link"])
+@pytest.mark.parametrize(
+    "make", [os.mkfifo, os.mkdir, lambda path: os.symlink("/dev/zero", path)], ids=["pipe", "folder", "link"]
+)
 def test_only_plain_files_are_read(tmp_path: Path, make: Callable[[Path], None], patience: None) -> None:
     """Not pipes, on which one waits, nor links, nor devices without an end."""
     make(tmp_path / "thing")
