@@ -74,6 +74,7 @@ def _survives(scene: dict[str, Any], method: str) -> None:
     assert found.outcome != FAILED, found.why
 
 
+@pytest.mark.slow
 @hypothesis.settings(max_examples=15, derandomize=True)
 @hypothesis.given(rods())
 def test_no_random_rod_breaks_the_default(scene: dict[str, Any]) -> None:
@@ -81,6 +82,7 @@ def test_no_random_rod_breaks_the_default(scene: dict[str, Any]) -> None:
     _survives(scene, "auto")
 
 
+@pytest.mark.slow
 @hypothesis.settings(max_examples=5, derandomize=True)
 @hypothesis.given(rods())
 def test_no_random_rod_breaks_the_safe_method(scene: dict[str, Any]) -> None:
