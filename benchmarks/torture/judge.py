@@ -116,7 +116,7 @@ def judge(case: Case, method: str, known: Reference) -> Verdict:
             allowed = ROUND_OFF * noise(scene, found)
         if told["rise"] > allowed:
             wrong.append(f"the energy grows by {told['rise']:.1e} of it")
-    if floating(scene):
+    if floating(scene) and scene.run.elements is None:  # on a mesh that is too coarse it does not
         left = unmet(scene, found)
         if left > LEDGER * accuracy:
             wrong.append(f"the drag of a free rod adds up to {left:.1e} of it")

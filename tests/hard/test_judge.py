@@ -25,7 +25,7 @@ MESH: dict[str, Any] = {"run__elements": 2, "run__degree": 3, "run__rtol": 1e-7,
 CASE = Case("quiet", "none", planar(run__backend="numpy", run__frames=6, **MESH))
 FREE = Case(
     "free", "none",
-    planar(run__backend="numpy", run__frames=6, ends={"left": {"kind": "free"}, "right": {"kind": "free"}}, **MESH),
+    planar(run__backend="numpy", run__frames=6, ends={"left": {"kind": "free"}, "right": {"kind": "free"}}),
 )  # fmt: skip
 
 
