@@ -91,9 +91,8 @@ def test_no_random_rod_breaks_the_safe_method(scene: dict[str, Any]) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("method", ["auto", "safe"])
 @hypothesis.settings(max_examples=12, derandomize=True)
 @hypothesis.given(scenes())
-def test_no_random_scene_is_failed(method: str, scene: dict[str, Any]) -> None:
+def test_no_random_scene_breaks_the_default(scene: dict[str, Any]) -> None:
     """With any ends, loads and effects."""
-    _survives(scene, method)
+    _survives(scene, "auto")
