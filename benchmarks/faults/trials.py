@@ -136,17 +136,19 @@ def killed(
 interrupted: Trial = partial(killed, number=signal.SIGINT)
 
 
+def _in_cache(case: Case, cache: Path) -> None:
+    """Prepares a process for a case, with a cache of its own."""
+    case.prepare()
+    os.environ["GEOCOSSERAT_CACHE"] = str(cache)
+
+
 def killed_while_making(ground: Ground, chance: random.Random) -> Outcome:
     """Ended while its kernel is derived, compiled and stored, in an empty cache; the next run finds nothing broken."""
     case = Case("pinned", ("run.elements=2", f"run.degree={chance.choice((3, 4))}"))
     expected = ground.reference(case)
     with ground.new() as out:
         cache = out.parent / "cache"
-
-        def own() -> None:
-            case.prepare()
-            os.environ["GEOCOSSERAT_CACHE"] = str(cache)
-
+        own = partial(_in_cache, case, cache)
         child = start(case.arguments(out), ground.said, own)
         time.sleep(chance.uniform(0.0, 4.0))
         stop(child, signal.SIGKILL)
@@ -355,11 +357,7 @@ def one_kernel_twice(ground: Ground, chance: random.Random) -> Outcome:
     expected = ground.reference(case)
     with ground.new() as out:
         cache = out.parent / "cache"
-
-        def own() -> None:
-            case.prepare()
-            os.environ["GEOCOSSERAT_CACHE"] = str(cache)
-
+        own = partial(_in_cache, case, cache)
         outs = [out.with_name(f"out{i}") for i in range(2)]
         children = [start(case.arguments(one), out.with_name(f"said{one.name}"), own) for one in outs]
         end_one = chance.random() < 0.3
