@@ -10,10 +10,12 @@ from functools import partial
 import numpy as np
 
 from geocosserat.conductor.rescue import SAFE, FellBack, rescued
+from geocosserat.discretisation.correcting import correctable, corrected
 from geocosserat.discretisation.mesh import Array
 from geocosserat.discretisation.sampling import stiffnesses
 from geocosserat.discretisation.semidiscrete import SemiDiscrete, discretise
 from geocosserat.discretisation.structure import RodStructure
+from geocosserat.kernel.balance import RodBalance
 from geocosserat.kernel.library import KernelText
 from geocosserat.kernel.load import load
 from geocosserat.kernel.native import NativeRod
@@ -24,7 +26,7 @@ from geocosserat.planning.gap import position_gap
 from geocosserat.planning.resolution import instants
 from geocosserat.planning.settings import DEFAULT_ACCURACY, HABITS, Setting
 from geocosserat.results.progress import progress
-from geocosserat.solver.integrate import integrate
+from geocosserat.solver.integrate import LAST_RESORTS, integrate
 from geocosserat.solver.legs import in_legs
 from geocosserat.solver.trajectory import Frame, Progress, Trajectory
 
@@ -115,10 +117,11 @@ class Simulator:
                 method: str, rtol: float, done: Trajectory, kept: Callable[[Trajectory], None] = _nothing
             ) -> Trajectory:
                 of_each = rtol / setting.rtol * atol
+                its, balance = (kernel, None) if method not in LAST_RESORTS else self._kept(rod, kernel)
 
                 def leg(before: Trajectory, to_come: Array, frame: Frame) -> Trajectory:
                     part, start = partial(_of_the_rest, told, before, scene.run.until), before.states[-1]
-                    return integrate(kernel, start, to_come, method, rtol, of_each, part, frame, self.instants)
+                    return integrate(its, start, to_come, method, rtol, of_each, part, frame, self.instants, balance)
 
                 return in_legs(leg, done, times, kept)
 
@@ -141,6 +144,17 @@ class Simulator:
             with self.clock("compile"):
                 self._last = size, rod, load(text, rod, self.backend), text
         return self._last[1:]
+
+    def _kept(
+        self, rod: SemiDiscrete, kernel: NativeRod | NumpyRod
+    ) -> tuple[NativeRod | NumpyRod, RodBalance | None]:
+        """A kernel of the same rod whose steps can be made to keep the balance of energy, and that balance; where the
+        methods keep it by themselves, the same kernel."""
+        if not correctable(rod.structure):
+            return kernel, None
+        rod = corrected(rod)
+        its = load(self.kernel_text(rod.structure), rod, self.backend)
+        return its, RodBalance(its, rod)
 
 
 def _of_the_rest(progress: Progress, before: Trajectory, until: float, fraction: float, steps: int) -> None:

@@ -104,3 +104,19 @@ class Kernel(Protocol):
 
     def solve(self, b: Array, out: Array) -> None:
         """Solve with the factors; out may not be b."""
+
+
+class Balance(Protocol):
+    """Of a kernel whose last two entries book what was dissipated and what work was done, and that stores an energy:
+    nothing but these changes it. For methods that keep the balance in each step."""
+
+    def stored(self, t: float, y: Array) -> tuple[float, float]:
+        """The energy stored, and a size of which rounding is a part: what stresses would do on whole strains."""
+
+    def aim(self, t: float, before: Array, after: Array) -> float:
+        """Chooses how the stress is to be corrected: along its own change from one state to the other. What such a
+        correction does on that way, which is positive."""
+
+    def correct(self, share: float) -> None:
+        """From now on the kernel's stress is off by that share of the correction, which is neither stored nor booked; 0
+        ends it."""

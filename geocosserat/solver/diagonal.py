@@ -7,8 +7,9 @@ M = b A + Aᵀ b - b bᵀ = (g - 1/4) [[1, -1], [-1, 1]]:
     safe      g = 1 - 1/√2   L-stable, and M >= 0: a step may lose energy that nobody took, and never makes any
     midpoint  g = 1/4        two half steps of the midpoint rule, M = 0: the balance of energy closes in each step
 
-Stages are solved to round-off, for energies are exact only as far as they are; for any size of system and constraints
-by the kernel's own elimination. Where Newton's method fails, also with damping, steps are shortened.
+An energy that is no square is kept by steps that are made again until they do (kept.py). Stages are solved to
+round-off, for energies are exact only as far as they are; for any size of system and constraints by the kernel's own
+elimination. Where Newton's method fails, also with damping, steps are shortened.
 
 Source: E. Hairer and G. Wanner, "Solving Ordinary Differential Equations II" (1996), sections IV.8 and IV.12; of the
 formula, L. Pareschi and G. Russo, J. Sci. Comput. 25 (2005) 129; of damping, P. Deuflhard, "Newton Methods for
@@ -20,8 +21,9 @@ from functools import partial
 
 import numpy as np
 
-from geocosserat.kernel.contract import Array, Kernel
+from geocosserat.kernel.contract import Array, Balance, Kernel
 from geocosserat.solver.consistent import consistent
+from geocosserat.solver.kept import kept
 from geocosserat.solver.settings import LEAST_RTOL, SINGULAR, STANDSTILL, Hope, stands_still
 from geocosserat.solver.trajectory import Frame, Progress, Trajectory
 
@@ -57,10 +59,20 @@ class Diverged(Exception):
 
 
 class Stepper:
-    """One integration: where it is, the step to try, and the factors it has."""
+    """One integration: where it is, the step to try, and the factors it has. balance: that of an energy which is no
+    square, if there is one to be kept."""
 
-    def __init__(self, kernel: Kernel, gamma: float, t: float, y: Array, rtol: float, atol: Array) -> None:
-        self.kernel, self.gamma, self.rtol, self.atol = kernel, gamma, rtol, atol
+    def __init__(
+        self,
+        kernel: Kernel,
+        gamma: float,
+        t: float,
+        y: Array,
+        rtol: float,
+        atol: Array,
+        balance: Balance | None = None,
+    ) -> None:
+        self.kernel, self.gamma, self.rtol, self.atol, self.balance = kernel, gamma, rtol, atol, balance
         self.moves = kernel.algebraic == 0.0
         self.constrained = not self.moves.all()
         self.inner = kernel.size - kernel.quadratures
@@ -155,6 +167,26 @@ class Stepper:
 
         Raises Diverged.
         """
+        if self.balance is None:
+            end = self._made(h)
+        else:
+            found = kept(self.balance, self.t, self.y, partial(self._made, h), loses=self.gamma > 0.25)
+            if found is None:
+                raise Diverged
+            end = found
+        if self.constrained:
+            try:
+                end = consistent(self.kernel, self.t + h, end, blocks=True)
+            except np.linalg.LinAlgError:
+                raise Diverged from None
+            self.linear_at = self.factored = np.nan  # the kernel forgot them
+        return end
+
+    def _made(self, h: float) -> Array:
+        """The same, but for what constraints fix.
+
+        Raises Diverged.
+        """
         g, y, moves = self.gamma, self.y, self.moves
         ahead = np.zeros_like(y)
         if self.past:
@@ -168,13 +200,7 @@ class Stepper:
         other = (second - base) / share * moves
         end: Array = y + 0.5 * h * (slope + other)
         self.bend = h * (other - slope)
-        if self.constrained:
-            end[~moves] = second[~moves]
-            try:
-                end = consistent(self.kernel, self.t + h, end, blocks=True)
-            except np.linalg.LinAlgError:
-                raise Diverged from None
-            self.linear_at = self.factored = np.nan  # the kernel forgot them
+        end[~moves] = second[~moves]
         return end
 
     def _error(self, t: float, end: Array) -> float:
@@ -219,13 +245,21 @@ class Stepper:
 
 
 def _integrate(
-    name: str, kernel: Kernel, start: Array, times: Array, rtol: float, atol: Array, progress: Progress, frame: Frame
+    name: str,
+    kernel: Kernel,
+    start: Array,
+    times: Array,
+    rtol: float,
+    atol: Array,
+    progress: Progress,
+    frame: Frame,
+    balance: Balance | None = None,
 ) -> Trajectory:
     """Integrates from times[0] through all of `times`; see `integrate`."""
     first, last = float(times[0]), float(times[-1])
     states = np.empty((len(times), kernel.size))
     states[0] = start
-    now = Stepper(kernel, GAMMAS[name], first, start, max(rtol, LEAST_RTOL), atol)
+    now = Stepper(kernel, GAMMAS[name], first, start, max(rtol, LEAST_RTOL), atol, balance)
     done, steps, reason, hope, paused = 1, 0, "", Hope(SOON, FAR), False
     while done < len(times) and not reason and not paused:
         before, target = now.t, float(times[done])

@@ -8,7 +8,7 @@ from math import isfinite
 
 import numpy as np
 
-from geocosserat.kernel.contract import Array, Kernel, is_native
+from geocosserat.kernel.contract import Array, Balance, Kernel, is_native
 from geocosserat.solver.consistent import consistent
 from geocosserat.solver.cvode_native import cvode_native
 from geocosserat.solver.diagonal import GAMMAS
@@ -42,12 +42,14 @@ def integrate(
     progress: Progress = _silent,
     frame: Frame = _onwards,
     switches: Sequence[float] = (),
+    balance: Balance | None = None,
 ) -> Trajectory:
     """Integrates y' = f(t, y) from `start` (size,) at times[0]; states at all of `times` (T >= 2, increasing).
 
     rtol, and atol for all or for each state entry (in its own unit), bound the local error of a step. A run that
     cannot go on returns what it has, with the reason; it never raises for numerical trouble. switches: instants at
-    which the rate jumps; no step reaches over one. Entries that constraints fix need no value at the start.
+    which the rate jumps; no step reaches over one. Entries that constraints fix need no value at the start. balance: that
+    of an energy which is no square; the last resorts keep it.
 
     Raises ValueError for an unknown method, or a start that is not finite.
     """
@@ -59,6 +61,8 @@ def integrate(
     tolerance = np.empty(start.shape)
     tolerance[:] = atol
     chosen = _chosen(method, kernel)
+    if balance is not None and method in LAST_RESORTS:
+        chosen = partial(chosen, balance=balance)
 
     def piece(y: Array, instants: Array, told: Progress, noted: Frame) -> Trajectory:
         return chosen(kernel, y, instants, rtol, tolerance, told, noted)
