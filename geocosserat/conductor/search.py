@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from geocosserat.conductor.simulate import Attempt, Simulator, chosen_setting, drift, misplaced, unbalanced
+from geocosserat.conductor.undetermined import undetermined
 from geocosserat.discretisation.mesh import Array, Mesh
 from geocosserat.discretisation.sampling import frictionless, left_of_friction
 from geocosserat.discretisation.semidiscrete import discretise
@@ -201,12 +202,18 @@ def _reason(
 ) -> str:
     """Why the accuracy was not reached; last: the last run that might have had it; modelled: what no run can have;
     blind: whether there is something that the run did not see."""
-    if reached or not kept.trajectory.reached:
-        return kept.trajectory.reason
-    if blind:
+    if reached:
+        return ""
+    if blind and kept.trajectory.reached:
         return "something that varies along the rod is too narrow for the finest mesh; see run.elements"
+    free = undetermined(kept)
+    if not kept.trajectory.reached:
+        return "; ".join(filter(None, (kept.trajectory.reason, free)))
     if not last.trajectory.reached:
-        return f"a finer run, for the accuracy asked for, did not come to its end: {last.trajectory.reason}"
+        why = f"a finer run, for the accuracy asked for, did not come to its end: {last.trajectory.reason}"
+        return "; ".join(filter(None, (why, free)))
+    if free:
+        return free
     if estimate is not None and modelled > 0.3 * estimate:
         return f"rotations without friction are a limit, of which {modelled:.1g} is left; ask for a larger error"
     if estimate is not None and kept.setting.rtol <= HABITS[kept.setting.method].least:
