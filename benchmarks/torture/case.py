@@ -9,6 +9,7 @@ from typing import Any
 
 from geocosserat.conductor.scene import load_any
 from geocosserat.model.expressions import symbols
+from geocosserat.model.law import Law
 from geocosserat.model.records import Scene
 
 
@@ -30,7 +31,12 @@ def resting(scene: Scene) -> bool:
     model = scene.model
     held = all(end.kind != "driven" and not end.force and not end.torque for end in (model.left, model.right))
     still = not any("t" in symbols(e) for e in model.reference)
-    return held and still and not model.effects and model.law is None
+    return held and still and not model.effects and (model.law is None or _stores(model.law))
+
+
+def _stores(law: Law) -> bool:
+    """Whether all that a law's stress does at rest is stored: none of those here gives anything by its rates."""
+    return law.energy is not None and not law.remainder and "t" not in symbols(law.energy)
 
 
 def floating(scene: Scene) -> bool:

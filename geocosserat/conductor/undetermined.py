@@ -32,8 +32,8 @@ def undetermined(attempt: Attempt) -> str:
             stresses, strains = (" and ".join(names[k] for k in modes) for names in (group.stress, group.strain))
             return (
                 f"expected constraints that determine the stress of each frozen mode, found a rod that is held at both "
-                f"ends and so straight that {stresses} may have any value; take {strains} out of rod.frozen and give it "
-                f"a stiffness, free an end, or begin with a rod that is bent"
+                f"ends and so straight that {stresses} may have any value; take {strains} out of rod.frozen and give "
+                f"it a stiffness, free an end, or begin with a rod that is bent"
             )
     return ""
 

@@ -24,6 +24,7 @@ import numpy as np
 from geocosserat.kernel.contract import Array, Balance, Kernel
 from geocosserat.solver.consistent import consistent
 from geocosserat.solver.kept import kept
+from geocosserat.solver.reduced import Integrator
 from geocosserat.solver.settings import LEAST_RTOL, SINGULAR, STANDSTILL, Hope, stands_still
 from geocosserat.solver.trajectory import Frame, Progress, Trajectory
 
@@ -280,4 +281,6 @@ def _integrate(
     return Trajectory(times[:done].copy(), states[:done], now.rates, now.jacobians, now.tries, reached, reason)
 
 
-safe, midpoint = (partial(_integrate, name) for name in GAMMAS)
+def diagonal(name: str, balance: Balance | None = None) -> Integrator:
+    """The method of that name. balance: see Stepper."""
+    return partial(_integrate, name, balance=balance)

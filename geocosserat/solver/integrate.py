@@ -11,7 +11,7 @@ import numpy as np
 from geocosserat.kernel.contract import Array, Balance, Kernel, is_native
 from geocosserat.solver.consistent import consistent
 from geocosserat.solver.cvode_native import cvode_native
-from geocosserat.solver.diagonal import GAMMAS
+from geocosserat.solver.diagonal import GAMMAS, diagonal
 from geocosserat.solver.ida_native import ida_native
 from geocosserat.solver.pieces import in_pieces
 from geocosserat.solver.radau_native import LARGEST, radau_native
@@ -48,8 +48,8 @@ def integrate(
 
     rtol, and atol for all or for each state entry (in its own unit), bound the local error of a step. A run that
     cannot go on returns what it has, with the reason; it never raises for numerical trouble. switches: instants at
-    which the rate jumps; no step reaches over one. Entries that constraints fix need no value at the start. balance: that
-    of an energy which is no square; the last resorts keep it.
+    which the rate jumps; no step reaches over one. Entries that constraints fix need no value at the start. balance:
+    that of an energy which is no square; the last resorts keep it.
 
     Raises ValueError for an unknown method, or a start that is not finite.
     """
@@ -60,9 +60,7 @@ def integrate(
         raise ValueError("expected a finite initial state, found infinities or NaN; check the start of the scene")
     tolerance = np.empty(start.shape)
     tolerance[:] = atol
-    chosen = _chosen(method, kernel)
-    if balance is not None and method in LAST_RESORTS:
-        chosen = partial(chosen, balance=balance)
+    chosen = _chosen(method, kernel, balance)
 
     def piece(y: Array, instants: Array, told: Progress, noted: Frame) -> Trajectory:
         return chosen(kernel, y, instants, rtol, tolerance, told, noted)
@@ -90,7 +88,7 @@ def _begun(kernel: Kernel, t: float, start: Array) -> Array | str:
         return "the constraints have no solution"
 
 
-def _chosen(method: str, kernel: Kernel) -> Integrator:
+def _chosen(method: str, kernel: Kernel, balance: Balance | None) -> Integrator:
     """The integrator of that name. SUNDIALS is called directly where kernel and installation allow it: CVODE, or IDA
     where there are constraints. Radau is our own for compiled kernels, scipy's for others."""
     native = is_native(type(kernel))
@@ -102,7 +100,7 @@ def _chosen(method: str, kernel: Kernel) -> Integrator:
         if library is not None:
             return partial(ida_native if constrained else cvode_native, library)
     if method in GAMMAS:  # takes constraints as they are
-        return _integrator("diagonal", method)
+        return diagonal(method, balance)
     found = _integrator("cvode", "cvode") if method == "cvode" else _integrator("scipy_methods", method)
     return reduced(found) if constrained else found
 

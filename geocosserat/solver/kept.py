@@ -9,8 +9,8 @@ again with a stress that is corrected by
 
 with S and E the stress and the strain at both ends of the first try, the same at all stages, and the share c such that
 what is stored is what was booked. It resists the motion, if c > 0, with a power that is no stored energy and no loss:
-that takes what had been made of nothing, or gives what had been lost. c is of first order in the step, the correction of
-second: the order of the method, also 2, remains. For one stage this is the discrete gradient of Gonzalez.
+that takes what had been made of nothing, or gives what had been lost. c is of first order in the step, the correction
+of second: the order of the method, also 2, remains. For one stage this is a discrete gradient, as that of Gonzalez.
 
 Source: O. Gonzalez, J. Nonlinear Sci. 6 (1996) 449; E. Hairer, C. Lubich and G. Wanner, "Geometric Numerical
 Integration" (2006), sections IV.4 and V.5.
