@@ -218,8 +218,12 @@ def test_a_correction_is_a_stress_beside_that_of_the_law() -> None:
         rod = Rod(LAWS["bistable and creeping"], backend)
         y = consistent(rod.kernel, 0.0, rod.rod.state, blocks=True)
         other = y.copy()
-        other[: len(y) // 2] *= 1.01
-        assert rod.balance.aim(0.0, y, other) > 0.0
+        other[:-2] *= 1.01
+        does = rod.balance.aim(0.0, y, other)
+        rod.balance.correct(1.0)
+        assert does == pytest.approx(_power(rod, other - y))
+        assert does > 0.0
+        rod.balance.correct(0.0)
         before, energy = np.empty_like(y), rod.balance.stored(0.0, y)[0]
         rod.kernel.rate(0.0, y, before)
         rod.balance.correct(0.1)
