@@ -109,6 +109,7 @@ class Simulator:
         _check_room(frames, len(rod.state))
         atol = tolerances(rod, setting.rtol, scene.run.atol, unit_of_energy(scene, rod, kernel))
         done = begin(rod.state, times)
+        own = self._for(setting.method, rod, kernel)
         start, fell_back = time.perf_counter(), None
         with progress(scene.title) as report:
             told = _no_longer(self.seconds, report)
@@ -117,7 +118,7 @@ class Simulator:
                 method: str, rtol: float, done: Trajectory, kept: Callable[[Trajectory], None] = _nothing
             ) -> Trajectory:
                 of_each = rtol / setting.rtol * atol
-                its, balance = (kernel, None) if method not in LAST_RESORTS else self._kept(rod, kernel)
+                its, balance = own if method == setting.method else self._for(method, rod, kernel)
 
                 def leg(before: Trajectory, to_come: Array, frame: Frame) -> Trajectory:
                     part, start = partial(_of_the_rest, told, before, scene.run.until), before.states[-1]
@@ -145,15 +146,18 @@ class Simulator:
                 self._last = size, rod, load(text, rod, self.backend), text
         return self._last[1:]
 
-    def _kept(
-        self, rod: SemiDiscrete, kernel: NativeRod | NumpyRod
+    def _for(
+        self, method: str, rod: SemiDiscrete, kernel: NativeRod | NumpyRod
     ) -> tuple[NativeRod | NumpyRod, RodBalance | None]:
-        """A kernel of the same rod whose steps can be made to keep the balance of energy, and that balance; where the
-        methods keep it by themselves, the same kernel."""
-        if not correctable(rod.structure):
+        """The kernel for a method: where it keeps a balance of energy only if it is made to, one of the same states
+        that can be corrected, and that balance; else the same."""
+        if method not in LAST_RESORTS or not correctable(rod.structure):
             return kernel, None
         rod = corrected(rod)
-        its = load(self.kernel_text(rod.structure), rod, self.backend)
+        with self.clock("derive"):
+            text = self.kernel_text(rod.structure)
+        with self.clock("compile"):
+            its = load(text, rod, self.backend)
         return its, RodBalance(its, rod)
 
 

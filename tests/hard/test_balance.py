@@ -270,7 +270,17 @@ def test_a_rod_with_a_stiffness_is_left_alone(scene: dict[str, Any]) -> None:
     """Its energy is a square: its kernel and its steps are what they are without all this."""
     simulator = simulate.Simulator(load_any(scene), "numpy", kernel_text, simulate.Clock())
     rod, kernel, _ = simulator._on(2, 3)
-    assert simulator._kept(rod, kernel) == (kernel, None)
+    assert [simulator._for(method, rod, kernel) for method in LAST_RESORTS] == [(kernel, None)] * 2
+
+
+def test_only_the_last_resorts_have_a_kernel_of_their_own() -> None:
+    """Other methods have the one without corrections, whatever the law."""
+    simulator = simulate.Simulator(load_any(LAWS["hardening rod"]), "numpy", kernel_text, simulate.Clock())
+    rod, kernel, _ = simulator._on(2, 3)
+    assert simulator._for("radau", rod, kernel) == (kernel, None)
+    its, balance = simulator._for("safe", rod, kernel)
+    assert its is not kernel
+    assert balance is not None
 
 
 def test_a_law_that_changes_in_time_is_left_alone() -> None:
