@@ -9,7 +9,10 @@ from geocosserat.codegen.printing import print_expression, print_tape
 from geocosserat.codegen.tape import Tape
 from geocosserat.discretisation.cells import POINTS
 from geocosserat.discretisation.structure import ZERO, EndStructure, Matrix, RodStructure, guide
-from geocosserat.model.expressions import symbols
+from geocosserat.model.expressions import FUNCTIONS, symbols
+
+CALLED = ("pow", "fabs", *(name for name in FUNCTIONS if name != "abs"))
+"""Functions of C that expressions may call."""
 
 
 @dataclass(frozen=True)
@@ -143,6 +146,7 @@ class Writer:
             "twist": group.twist,
             "values": [f"value_{i + 1}" for i in range(d)],
             "frozen": [int(fixed) for fixed in s.constrained],
+            "functions": [f"{name}(" for name in CALLED],
             "viscous": sum(s.viscous),
             "carried": s.carried,
             "prescribed": s.prescribed and s.increments > 0,

@@ -13,6 +13,10 @@ ENERGIES = 2
 """Of a rod's state: dissipated and work done, its last entries, on which nothing depends."""
 
 
+LANES = 8
+"""How many states a kernel's `rates` take at once."""
+
+
 @dataclass(frozen=True)
 class Callbacks:
     """Addresses of C functions with the signatures of SUNDIALS' callbacks, for integrations that never leave C.
@@ -36,13 +40,15 @@ class Callbacks:
 class Functions:
     """Addresses of C functions for an integrator of small dense systems.
 
-    data: what they take first. rate: int (data, t, y, rate). jacobian: const double * (data, t, y), the matrix by rows,
-    its owner's until the next call. quadratures: how many of the last entries nothing depends on. keep: whatever must
-    stay alive while they are used.
+    data: what they take first. rate: int (data, t, y, rate). rates: int (data, count, t, y, rate), the same of up to
+    LANES states side by side, t (LANES,), y and rate (size, LANES): for methods whose steps have several stages.
+    jacobian: const double * (data, t, y), the matrix by rows, its owner's until the next call. quadratures: how many of
+    the last entries nothing depends on. keep: whatever must stay alive while they are used.
     """
 
     data: int
     rate: int
+    rates: int
     jacobian: int
     quadratures: int
     keep: Any

@@ -41,7 +41,7 @@ typedef struct rod_problem {
     const rod *r;
     size_t size;
     double *lower, *diagonal, *upper, *border, *factors, *scratch, *solving, *right;
-    double *whole, *at, *next, *rates;
+    double *whole, *room, *at, *next, *rates;
     int *pivots;
     void *vector, *current;
     int ahead;
@@ -49,6 +49,8 @@ typedef struct rod_problem {
     double slope;
 } rod_problem;
 int problem_slope(void *problem, double t, const double *y, double *rate);
+size_t problem_room(int elements);
+int problem_slopes(void *problem, int count, const double *t, const double *y, double *rate);
 const double *problem_dense(void *problem, double t, const double *y);
 int problem_rate(double t, void *y, void *rate, void *problem);
 int problem_system(double t, void *y, void *rate, void *none, int usable, int *renewed, double gamma, void *problem,
@@ -76,12 +78,13 @@ def _library(path: Path) -> Any:
 
 
 @lru_cache(maxsize=64)
-def _of_library(path: Path) -> tuple[int, int, int, int, int, int]:
+def _of_library(path: Path) -> tuple[int, int, int, int, int, int, int]:
     """What is the same for all rods of a library, and takes a while to ask for: numbers of a block, of a pair, of the
-    border and of scratch space; addresses of the rate and of the dense Jacobian."""
+    border and of scratch space; addresses of the rate, of several rates at once and of the dense Jacobian."""
     ffi, lib = _interface(), _library(path)
-    rate, dense = (int(ffi.cast("uintptr_t", thing)) for thing in (lib.problem_slope, lib.problem_dense))
-    return lib.rod_block(), lib.rod_pair(), lib.rod_border(), lib.rod_scratch(), rate, dense
+    functions = (lib.problem_slope, lib.problem_slopes, lib.problem_dense)
+    rate, rates, dense = (int(ffi.cast("uintptr_t", thing)) for thing in functions)
+    return lib.rod_block(), lib.rod_pair(), lib.rod_border(), lib.rod_scratch(), rate, rates, dense
 
 
 class NativeRod:
@@ -171,18 +174,18 @@ class NativeRod:
         """Rate and dense Jacobian as an integrator takes them that calls C directly."""
         if self._functions is None:
             ffi, n = self._ffi, self._elements
-            block, pair, border, scratch, rate, dense = self._shared
-            sizes = (n * pair, n * block * block, n * pair, border, scratch)
+            block, pair, border, scratch, rate, rates, dense = self._shared
+            sizes = (n * pair, n * block * block, n * pair, border, scratch, self._lib.problem_room(n))
             ends = list(accumulate(sizes))
             room = np.empty(ends[-1] + self._dense_room())  # at once: an array for each would take as long as two steps
             at = self._at(room)
-            lower, diagonal, upper, border_at, scratch_at, whole = (at + end for end in (0, *ends))
+            lower, diagonal, upper, border_at, scratch_at, side_by_side, whole = (at + end for end in (0, *ends))
             problem = ffi.new("rod_problem *", {
                 "r": self._rod, "size": self.size, "lower": lower, "diagonal": diagonal, "upper": upper,
-                "border": border_at, "scratch": scratch_at, "whole": whole,
+                "border": border_at, "scratch": scratch_at, "room": side_by_side, "whole": whole,
             })  # fmt: skip
             kept = problem, room, self._rod, self._kept, self._lib
-            self._functions = Functions(int(ffi.cast("uintptr_t", problem)), rate, dense, ENERGIES, keep=kept)
+            self._functions = Functions(int(ffi.cast("uintptr_t", problem)), rate, rates, dense, ENERGIES, keep=kept)
         return self._functions
 
     def callbacks(self, vector: int, current: int) -> Callbacks:

@@ -26,7 +26,7 @@ enum { MOST_FAILURES = 60, BREATH = 50 }; /* tries of one step; steps between tw
 
 /* A Jacobian serves on as long as Newton's method with it leaves less than this of an error in each round: a new one
  * costs little more than a round, and is needed soon, for steps grow. */
-static const double RENEW = 0.01;
+static const double RENEW = 0.03;
 
 /* What Newton's method should leave of an error in each round, and the power of the step with which that grows (measured
  * on the examples): steps grow no further, else it fails before the error test does. */
@@ -64,6 +64,8 @@ typedef struct progress {
 } progress;
 
 typedef int (*rate_of)(void *data, double t, const double *y, double *rate);
+/* Of so many states side by side, up to as many as a strip holds. */
+typedef int (*rates_of)(void *data, int count, const double *t, const double *y, double *rate);
 typedef const double *(*jacobian_of)(void *data, double t, const double *y);
 
 typedef struct radau {
@@ -71,6 +73,7 @@ typedef struct radau {
     int size, moving, fixed; /* entries of the state; of those that move, and that constraints fix */
     void *data;
     rate_of rate;
+    rates_of stage_rates;
     jacobian_of jacobian;
     double rtol;
     long steps, rates, jacobians;
@@ -87,11 +90,12 @@ typedef struct radau {
     int inner, *inner_rows;    /* of the matrix of the constraints: its size, padded, see BLOCK; the order in its factors */
     shifted linear;            /* what is left when they are eliminated */
     number g, *x;              /* the step over the method's eigenvalues; right-hand sides and solutions of their systems */
-    number row[MOST_STAGES];   /* the same as in the method: row[s] for all parts, column[k] for all stages */
-    strip column[PAIRS + 1][2];
+    number row[MOST_STAGES];   /* the same as in the method: row[s] for all parts; the others for all stages */
+    strip column[PAIRS + 1][2], weight[MOST_STAGES], node, error_weight;
     strip *gap, *closing, *made; /* of constraints and of what moves, for all stages: see `newton` */
     double *y, *slope, *atol, *scale; /* the state, its rate, tolerances, one over what an error may be */
-    double *Z, *last_Z, *F, *change;  /* [stages][size] displacements, now and in the last step; rates; Newton's change */
+    strip *Z, *last_Z, *F, *change; /* [size] of all stages: displacements, now and in the last step; rates; Newton's change */
+    strip *at;                      /* [size] states at the stages */
     double *trial, *error;
     double *coupling, *answers, *bound;               /* of the Jacobian, see `condense` */
     double *asking;                                   /* of linear systems, see `condense` */
@@ -228,6 +232,15 @@ static void solve(int n, const double *A, const int *order, int sides, int apart
         }
 }
 
+/* The sum of all entries of a strip. */
+static double total_of(strip x)
+{
+    double total = 0.0;
+    for (int l = 0; l < ROWS; ++l)
+        total += x[l];
+    return total;
+}
+
 /* The sum of squares, in lanes, since a single sum would wait for every addition. */
 static double squares(int n, const double *restrict x, const double *restrict scale)
 {
@@ -268,7 +281,7 @@ static const double *linearise(radau *r, int where)
     if (where == NOW)
         return r->jacobian(r->data, r->t, r->y);
     for (int i = 0; i < r->size; ++i)
-        r->trial[i] = r->y[i] + r->Z[middle * r->size + i];
+        r->trial[i] = r->y[i] + r->Z[i][middle];
     return r->jacobian(r->data, r->t + r->m.node[middle] * r->h, r->trial);
 }
 
@@ -338,31 +351,24 @@ static int evaluate(radau *r, double t, const double *y, double *rate)
     return r->finite;
 }
 
+/* Rates of all stages, and whether they are finite. Strips have room for more stages: there stands the state at the end
+ * of the step as it would be if nothing moved, and what comes of it goes nowhere. */
 static int evaluate_stages(radau *r)
 {
-    const int n = r->size;
-    for (int s = 0; s < r->m.stages; ++s) {
-        for (int i = 0; i < n; ++i)
-            r->trial[i] = r->y[i] + r->Z[s * n + i];
-        if (!evaluate(r, r->t + r->m.node[s] * r->h, r->trial, r->F + s * n))
-            return 0;
-    }
-    return 1;
-}
-
-/* Numbers of all stages, which lie so far apart, as a strip. */
-static inline strip gather(const int S, const double *x, int apart)
-{
+    const int n = r->size, S = r->m.stages;
+    const strip t = r->t + r->h * r->node;
     strip all = {0.0};
+    r->rates += S;
+    for (int i = 0; i < n; ++i)
+        r->at[i] = r->y[i] + r->Z[i];
+    r->stage_rates(r->data, S, (const double *)&t, (const double *)r->at, (double *)r->F);
+    for (int i = 0; i < n; ++i)
+        all += r->F[i] - r->F[i]; /* 0, or NaN */
+    double sum = 0.0;
     for (int s = 0; s < S; ++s)
-        all[s] = x[s * apart];
-    return all;
-}
-
-static inline void scatter(const int S, strip all, double *x, int apart)
-{
-    for (int s = 0; s < S; ++s)
-        x[s * apart] = all[s];
+        sum += all[s];
+    r->finite = sum == 0.0;
+    return r->finite;
 }
 
 /* y += A x for all stages, A [columns][apart] of so many rows; four at once, since each waits for its last addition. */
@@ -414,27 +420,27 @@ static inline void newton_of(radau *r, const int S)
 {
     const int n = r->size, d = r->moving, a = r->fixed, v = r->inner, *order = r->linear.order;
     const int *moves = r->moves, *fixes = r->fixes;
-    const double *restrict Z = r->Z;
+    const strip *restrict Z = r->Z, *restrict F = r->F;
     const number g = r->g;
-    double *restrict change = r->change;
+    strip *restrict change = r->change;
     strip *restrict made = r->made, *restrict closing = r->closing;
     number *restrict x = r->x;
     for (int i = 0; i < d; ++i)
-        made[i] = gather(S, r->F + moves[i], n);
+        made[i] = F[moves[i]];
     if (a) { /* the constraints are solved for: what moves then does so by itself */
         for (int i = 0; i < a; ++i)
-            r->gap[i] = -gather(S, r->F + fixes[i], n);
+            r->gap[i] = -F[fixes[i]];
         solve_all(v, r->bound, r->inner_rows, r->gap, closing);
         add_stages(d, a, d, r->coupling, closing, made);
     }
     for (int i = 0; i < d; ++i) { /* by parts, each in its lane */
-        const double *restrict own = (const double *)(made + order[i]), *restrict at = Z + moves[order[i]];
+        const double *restrict own = (const double *)(made + order[i]), *restrict at = (const double *)(Z + moves[order[i]]);
         number f = {{0.0}, {0.0}}, z = f;
         for (int s = 0; s < S; ++s) {
             f.re += own[s] * r->row[s].re;
             f.im += own[s] * r->row[s].im;
-            z.re += at[s * n] * r->row[s].re;
-            z.im += at[s * n] * r->row[s].im;
+            z.re += at[s] * r->row[s].re;
+            z.im += at[s] * r->row[s].im;
         }
         f = times(g, f);
         x[i] = (number){f.re - z.re, f.im - z.im};
@@ -444,14 +450,13 @@ static inline void newton_of(radau *r, const int S)
         strip sum = {0.0};
         for (int k = 0; k <= S / 2; ++k)
             sum += x[i].re[k] * r->column[k][0] - x[i].im[k] * r->column[k][1];
-        made[order[i]] = sum;
-        scatter(S, sum, change + moves[order[i]], n);
+        change[moves[order[i]]] = made[order[i]] = sum;
     }
     add_stages(a, d, v, r->answers, made, closing);
     for (int i = 0; i < a; ++i)
-        scatter(S, closing[i], change + fixes[i], n);
+        change[fixes[i]] = closing[i];
     for (int i = d + a; i < n; ++i)
-        scatter(S, (strip){0.0}, change + i, n);
+        change[i] = (strip){0.0};
 }
 
 /* The same by numbers of stages known to the compiler. */
@@ -481,45 +486,59 @@ static void predict(radau *r)
 {
     const int n = r->size, S = r->m.stages;
     const double longer = r->h / r->last_h;
-    memset(r->Z, 0, (size_t)S * n * sizeof *r->Z);
+    memset(r->Z, 0, n * sizeof *r->Z);
     if (r->last_h == 0.0 || longer > FORESEEN || SMOOTH * r->roughness * pow(longer, S + 1) > 1.0)
         return;
+    strip share[MOST_STAGES]; /* share[k][s]: how much of stage k of the last step is in stage s of this one */
+    memset(share, 0, sizeof share);
     for (int s = 0; s < S; ++s) {
         double weight[MOST_STAGES];
         interpolate(&r->m, 1.0 + r->m.node[s] * longer, weight);
         weight[S - 1] -= 1.0;
         for (int k = 0; k < S; ++k)
-            subtract(n, -weight[k], r->last_Z + k * n, r->Z + s * n);
+            share[k][s] = weight[k];
+    }
+    for (int i = 0; i < n; ++i) {
+        const double *last = (const double *)(r->last_Z + i);
+        strip sum = {0.0};
+        for (int k = 0; k < S; ++k)
+            sum += last[k] * share[k];
+        r->Z[i] = sum;
     }
 }
 
 /* Displacements of quadratures at all stages, from their rates. */
 static void sum_quadratures(radau *r)
 {
-    const int n = r->size, S = r->m.stages;
-    for (int i = r->moving + r->fixed; i < n; ++i)
-        for (int s = 0; s < S; ++s) {
-            double total = 0.0;
-            for (int k = 0; k < S; ++k)
-                total += r->m.weight[s][k] * r->F[k * n + i];
-            r->Z[s * n + i] = r->h * total;
-        }
+    for (int i = r->moving + r->fixed; i < r->size; ++i) {
+        const double *rates = (const double *)(r->F + i);
+        strip sum = {0.0};
+        for (int k = 0; k < r->m.stages; ++k)
+            sum += rates[k] * r->weight[k];
+        r->Z[i] = r->h * sum;
+    }
 }
 
 /* Root mean square of Newton's change of all stages, in units of what an error may be; quadratures are not in it. */
 static double change_norm(const radau *r)
 {
-    const int n = r->moving + r->fixed, S = r->m.stages;
-    double total = 0.0;
-    for (int s = 0; s < S; ++s)
-        total += squares(n, r->change + s * r->size, r->scale);
-    return sqrt(total / (S * n));
+    const int n = r->moving + r->fixed;
+    strip one = {0.0}, other = one; /* two, since each waits for its last addition */
+    int i = 0;
+    for (; i + 2 <= n; i += 2) {
+        const strip x = r->scale[i] * r->change[i], y = r->scale[i + 1] * r->change[i + 1];
+        one += x * x;
+        other += y * y;
+    }
+    if (i < n)
+        one += (r->scale[i] * r->change[i]) * (r->scale[i] * r->change[i]);
+    return sqrt(total_of(one + other) / (r->m.stages * n));
 }
 
 /* Solves for the stages. Returns how many rounds that took, or 0 if it failed; `shrink`: then how much shorter to try. */
 static int solve_stages(radau *r, double *shrink)
 {
-    const int count = r->m.stages * r->size, most = 7 + 2 * (r->m.stages - 3);
+    const int n = r->moving + r->fixed, most = 7 + 2 * (r->m.stages - 3);
     const double floor = fmin(0.3, 100.0 * DBL_EPSILON / r->rtol), enough = fmax(floor, fmin(NEWTON, NEWTON_ROOT * sqrt(r->rtol)));
     double before = 0.0, theta = 0.0, contraction = 0.0, share = fmax(UNSEEN, pow(r->share, 0.8));
     *shrink = 0.5;
@@ -542,7 +561,7 @@ static int solve_stages(radau *r, double *shrink)
                 return 0;
             }
         }
-        for (int i = 0; i < count; ++i)
+        for (int i = 0; i < n; ++i)
             r->Z[i] += r->change[i];
         if (share * size <= enough) {
             r->share = share;
@@ -559,12 +578,8 @@ static double error_of(radau *r, const double *rate)
 {
     const int n = r->size, d = r->moving, a = r->fixed, quadratures = n - d - a;
     const double g = r->h / r->m.value[0][0];
-    for (int i = 0; i < n; ++i) {
-        double sum = g * rate[i];
-        for (int s = 0; s < r->m.stages; ++s)
-            sum += r->m.error[s] * r->Z[s * n + i];
-        r->error[i] = sum;
-    }
+    for (int i = 0; i < n; ++i)
+        r->error[i] = g * rate[i] + total_of(r->error_weight * r->Z[i]);
     for (int i = 0; i < d; ++i)
         r->x[i] = (number){{r->error[r->moves[r->linear.order[i]]]}, {0.0}};
     solve_shifted(&r->linear, r->x); /* of what moves: constraints hold */
@@ -579,12 +594,12 @@ static double error_of(radau *r, const double *rate)
 /* The same, looked at twice where it is too large: the first look exaggerates where the problem is stiff. */
 static double estimate(radau *r)
 {
-    double error = error_of(r, r->slope);
+    double error = error_of(r, r->slope), *rate = (double *)r->change; /* room that is free */
     if (error >= 1.0) {
         for (int i = 0; i < r->size; ++i)
             r->trial[i] = r->y[i] + r->error[i];
-        if (evaluate(r, r->t, r->trial, r->change))
-            error = error_of(r, r->change);
+        if (evaluate(r, r->t, r->trial, rate))
+            error = error_of(r, rate);
     }
     return error;
 }
@@ -606,11 +621,17 @@ static void rescale(radau *r)
 static void accept(radau *r, double error)
 {
     const int n = r->size, S = r->m.stages, m = r->moving + r->fixed;
-    double *swap = r->last_Z;
-    r->roughness = error / fmax(DBL_MIN, sqrt(squares(m, r->Z + (S - 1) * n, r->scale) / m));
-    for (int i = 0; i < n; ++i)
-        r->y[i] += r->Z[(S - 1) * n + i];
-    memcpy(r->slope, r->F + (S - 1) * n, n * sizeof *r->slope);
+    strip *swap = r->last_Z;
+    double moved = 0.0;
+    for (int i = 0; i < m; ++i) {
+        const double x = r->scale[i] * r->Z[i][S - 1];
+        moved += x * x;
+    }
+    r->roughness = error / fmax(DBL_MIN, sqrt(moved / m));
+    for (int i = 0; i < n; ++i) {
+        r->y[i] += r->Z[i][S - 1];
+        r->slope[i] = r->F[i][S - 1];
+    }
     r->last_Z = r->Z;
     r->Z = swap;
     r->last_h = r->h;
@@ -689,18 +710,20 @@ static void *part_of(char *room, size_t *used, size_t bytes)
 /* Lays the arrays of an integration out in a room, or counts its bytes. */
 static size_t lay_out(radau *r, char *room)
 {
-    const size_t n = r->size, d = r->moving, a = r->fixed, S = r->m.stages, v = r->inner, w = r->linear.width;
+    const size_t n = r->size, d = r->moving, a = r->fixed, v = r->inner, w = r->linear.width;
     shifted *s = &r->linear;
     size_t used = 0;
     struct { double **array; size_t count; } numbers[] = {
         {&r->y, n}, {&r->slope, n}, {&r->atol, n}, {&r->scale, n}, {&r->trial, n}, {&r->error, n},
-        {&r->Z, S * n}, {&r->last_Z, S * n}, {&r->F, S * n}, {&r->change, S * n},
         {&r->coupling, d * a}, {&r->answers, v * (d + 1)}, {&r->asking, v * (d + 1)}, {&r->bound, v * v},
         {&r->room, v},
         {&s->H, w * d}, {&s->lower, w * d}, {&s->y, w},
     };
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; ++i)
         *numbers[i].array = part_of(room, &used, numbers[i].count * sizeof(double));
+    strip **strips[] = {&r->Z, &r->last_Z, &r->F, &r->change, &r->at};
+    for (size_t i = 0; i < sizeof strips / sizeof *strips; ++i)
+        *strips[i] = part_of(room, &used, n * sizeof(strip));
     r->gap = part_of(room, &used, v * sizeof *r->gap);
     r->closing = part_of(room, &used, v * sizeof *r->closing);
     if (room)
@@ -727,7 +750,7 @@ void radau_free(radau *r)
 /* An integration about to begin at t with the state y, or NULL if memory does not suffice. constrained [size]: 1 for
  * entries that constraints fix; quadratures: how many of the last entries nothing depends on. */
 static radau *radau_new(const method *m, int size, int quadratures, const double *constrained, void *data, rate_of rate,
-                        jacobian_of jacobian, double t, const double *y, double rtol, const double *atol)
+                        rates_of stage_rates, jacobian_of jacobian, double t, const double *y, double rtol, const double *atol)
 {
     radau *r = calloc(1, sizeof *r);
     if (!r)
@@ -752,12 +775,20 @@ static radau *radau_new(const method *m, int size, int quadratures, const double
             r->column[k][0][s] = m->column[k][s][0];
             r->column[k][1][s] = m->column[k][s][1];
         }
+    r->node += 1.0;
+    for (int s = 0; s < m->stages; ++s) {
+        r->node[s] = m->node[s];
+        r->error_weight[s] = m->error[s];
+        for (int k = 0; k < m->stages; ++k)
+            r->weight[k][s] = m->weight[s][k];
+    }
     for (int i = 0, moving = 0, fixed = 0; i < size - quadratures; ++i)
         *(constrained[i] != 0.0 ? r->fixes + fixed++ : r->moves + moving++) = i;
     memcpy(r->y, y, size * sizeof *y);
     memcpy(r->atol, atol, size * sizeof *atol);
     r->data = data;
     r->rate = rate;
+    r->stage_rates = stage_rates;
     r->jacobian = jacobian;
     r->rtol = rtol;
     r->t = t;
@@ -815,8 +846,9 @@ static void show(radau *r, double t, double *out)
         double weight[MOST_STAGES];
         interpolate(&r->m, 1.0 + (t - r->t) / r->last_h, weight);
         weight[S - 1] -= 1.0;
-        for (int s = 0; s < S; ++s)
-            subtract(n, -weight[s], r->last_Z + s * n, out);
+        for (int i = 0; i < n; ++i)
+            for (int s = 0; s < S; ++s)
+                out[i] += weight[s] * r->last_Z[i][s];
     }
 }
 
@@ -860,10 +892,10 @@ void radau_go(radau *r, const double *times, int count, double *states, progress
  * constraints have it, into `states` [count][size]. Says in p how far it came and why it ended. Where it paused, having taken
  * many steps, it returns what `radau_go` goes on with and `radau_free` gives back, else NULL. */
 radau *radau_start(const method *m, int size, int quadratures, const double *constrained, void *data, rate_of rate,
-                   jacobian_of jacobian, double rtol, const double *atol, const double *start, const double *times, int count,
+                   rates_of stage_rates, jacobian_of jacobian, double rtol, const double *atol, const double *start, const double *times, int count,
                    double *states, progress *p)
 {
-    radau *r = radau_new(m, size, quadratures, constrained, data, rate, jacobian, times[0], start, rtol, atol);
+    radau *r = radau_new(m, size, quadratures, constrained, data, rate, stage_rates, jacobian, times[0], start, rtol, atol);
     if (!r) {
         p->code = NO_ROOM;
         return NULL;

@@ -21,6 +21,9 @@ LARGEST = 1000
 SOON, FAR = 20_000, 10_000_000
 """Its steps are long: after so many, a run whose end is so many more away at their pace will never get there."""
 
+SOURCES = ("shifted.c", "radau.c")
+"""One text in C, in this order."""
+
 MOST_STAGES, PARTS = 7, 4
 METHOD = np.dtype(
     [
@@ -44,8 +47,8 @@ typedef struct progress {
 } progress;
 /* Pointers that are known as numbers are passed as such. */
 void *radau_start(const void *method, int size, int quadratures, const double *constrained, uintptr_t data,
-                  uintptr_t rate, uintptr_t jacobian, double rtol, const double *atol, const double *start,
-                  const double *times, int count, double *states, progress *p);
+                  uintptr_t rate, uintptr_t rates, uintptr_t jacobian, double rtol, const double *atol,
+                  const double *start, const double *times, int count, double *states, progress *p);
 void radau_go(void *memory, const double *times, int count, double *states, progress *p);
 void radau_free(void *memory);
 """
@@ -110,7 +113,7 @@ def _library() -> tuple[cffi.FFI, Any, Any]:
     """The interface, the library, and the type by which C takes arrays."""
     ffi = cffi.FFI()
     ffi.cdef(DECLARATIONS)
-    source = "".join(Path(__file__).with_name(name).read_text() for name in ("shifted.c", "radau.c"))
+    source = "".join(Path(__file__).with_name(name).read_text() for name in SOURCES)
     return ffi, opened(lambda path: ffi.dlopen(str(path)), source), ffi.typeof("double[]")
 
 
@@ -135,7 +138,7 @@ def radau_native(
     place = at(numbers, np.ascontiguousarray(times)), count, at(numbers, states), ffi.new("progress *")
     now = place[3]
     memory = lib.radau_start(_method_at(stages_for(rtol)), size, functions.quadratures, at(numbers, kernel.algebraic),
-                             functions.data, functions.rate, functions.jacobian, max(rtol, LEAST_RTOL),
+                             functions.data, functions.rate, functions.rates, functions.jacobian, max(rtol, LEAST_RTOL),
                              at(numbers, atol), at(numbers, np.ascontiguousarray(start)), *place)  # fmt: skip
     if now.code in AT_START and not now.done:
         return Trajectory(times[:1].copy(), start[None].copy(), 1, 0, 0, False, AT_START[now.code])

@@ -220,8 +220,10 @@ def test_templates_get_exactly_the_keys_they_use(monkeypatch: pytest.MonkeyPatch
         if path.name.startswith(("driver", "Makefile", "rod.h")):
             continue
         used |= meta.find_undeclared_variables(parser.parse(path.read_text()))
-    macros = {"inputs", "constants", "read", "steps", "named", "numbered", "unpack"}
-    assert given == used - macros
+    macros = {"inputs", "constants", "read", "steps", "named", "numbered", "unpack", "of"}
+    # set in one template, read in those it includes
+    own = {"form", "wide", "real", "kind", "zero", "instant", "now", "at"}
+    assert given == used - macros - own
 
 
 def test_a_missing_key_is_an_error() -> None:

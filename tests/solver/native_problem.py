@@ -10,8 +10,11 @@ from typing import Any
 import cffi
 import numpy as np
 
-from geocosserat.kernel.contract import Callbacks, Functions
+from geocosserat.kernel.contract import LANES, Callbacks, Functions
 from tests.solver.problems import Array, constrained, forced_rates
+
+MOST = 256
+"""Entries of the largest state."""
 
 STRUCT = """
 typedef struct {
@@ -37,6 +40,24 @@ int slope(void *data, double t, const double *x, double *r)
     if (t > p->bad)
         r[p->size - 1] = NAN;
     return 0;
+}}
+/* The same of up to LANES states side by side, by any such function. */
+static int side_by_side(int (*one)(void *, double, const double *, double *), problem *p, int count, const double *t,
+                        const double *x, double *r)
+{{
+    double at[{MOST}], rate[{MOST}];
+    for (int l = 0; l < count; ++l) {{
+        for (int i = 0; i < p->size; ++i)
+            at[i] = x[{LANES} * i + l];
+        one(p, t[l], at, rate);
+        for (int i = 0; i < p->size; ++i)
+            r[{LANES} * i + l] = rate[i];
+    }}
+    return 0;
+}}
+int slopes(void *data, int count, const double *t, const double *x, double *r)
+{{
+    return side_by_side(slope, data, count, t, x, r);
 }}
 const double *matrix(void *data, double t, const double *x)
 {{
@@ -102,6 +123,10 @@ int constrained_slope(void *data, double t, const double *x, double *r)
     p->latest = fmax(p->latest, t);
     return 0;
 }
+int constrained_slopes(void *data, int count, const double *t, const double *x, double *r)
+{
+    return side_by_side(constrained_slope, data, count, t, x, r);
+}
 const double *constrained_matrix(void *data, double t, const double *x)
 {
     problem *p = data;
@@ -142,7 +167,9 @@ DECLARATIONS = f"""
 int system(double, void *, void *, void *, int, int *, double, void *, void *, void *, void *);
 int solve(void *, void *, void *, void *, double);
 int slope(void *, double, const double *, double *);
+int slopes(void *, int, const double *, const double *, double *);
 const double *matrix(void *, double, const double *);
+int constrained_slopes(void *, int, const double *, const double *, double *);
 int constrained_slope(void *, double, const double *, double *);
 const double *constrained_matrix(void *, double, const double *);
 int residual(double, void *, void *, void *, void *);
@@ -188,12 +215,12 @@ class NativeForced:
         return Callbacks(address(self.problem), *map(address, functions), keep=self)
 
     def functions(self) -> Functions:
-        return self._functions("slope", "matrix")
+        return self._functions("slope", "slopes", "matrix")
 
-    def _functions(self, rate: str, jacobian: str) -> Functions:
-        things = (self.problem, getattr(self._lib, rate), getattr(self._lib, jacobian))
-        data, slope, matrix = (int(self._ffi.cast("uintptr_t", thing)) for thing in things)
-        return Functions(data, slope, matrix, quadratures=0, keep=self)
+    def _functions(self, *names: str) -> Functions:
+        things = (self.problem, *(getattr(self._lib, name) for name in names))
+        data, slope, slopes, matrix = (int(self._ffi.cast("uintptr_t", thing)) for thing in things)
+        return Functions(data, slope, slopes, matrix, quadratures=0, keep=self)
 
     @property
     def algebraic(self) -> Array:
@@ -216,7 +243,7 @@ class NativeConstrained(NativeForced):
         return self._python.algebraic
 
     def functions(self) -> Functions:
-        return self._functions("constrained_slope", "constrained_matrix")
+        return self._functions("constrained_slope", "constrained_slopes", "constrained_matrix")
 
     def callbacks(self, vector: int, current: int) -> Callbacks:
         names = ("residual", "residual_system", "residual_solve")

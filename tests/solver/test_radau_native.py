@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import resource
+import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -24,6 +25,15 @@ TIMES = np.array([0.0, 1e-6, 0.1, 0.4, 1.0, 2.0])
 def library(c_compiler: str, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The compiled problem."""
     return build(c_compiler, tmp_path_factory.mktemp("forced"))
+
+
+def test_the_integrator_compiles_without_a_warning(c_compiler: str, tmp_path: Path) -> None:
+    """C99 and the vectors of gcc and clang, -Wall -Wextra -Werror."""
+    folder = Path(module.__file__).parent
+    (tmp_path / "radau.c").write_text("".join((folder / name).read_text() for name in module.SOURCES))
+    check = [c_compiler, "-std=c99", "-Wall", "-Wextra", "-Werror", "-Wno-psabi", "-O1", "-c", "radau.c", "-o", "r.o"]
+    done = subprocess.run(check, cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr[:500]
 
 
 def test_three_stages_are_the_published_ones() -> None:
