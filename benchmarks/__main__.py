@@ -2,6 +2,7 @@
 
 import os
 import platform
+from collections.abc import Callable, Iterator
 from importlib.metadata import version
 from pathlib import Path
 
@@ -25,40 +26,39 @@ def _machine() -> str:
     )
 
 
-def _sections() -> list[tuple[str, str, str]]:
-    return [
-        (
-            "A rate of a generated kernel, beside one written by hand",
-            "kernel_cost",
-            kernel_cost.table(kernel_cost.measure()),
-        ),
-        ("Bindings", "bindings", bindings.table()),
-        ("Linear solvers", "linear_solvers", linear_solvers.table()),
-        ("Whole runs from the shell, in seconds (minimum, median)", "startup", startup.table()),
-        ("What each mode and each effect costs", "pruning", pruning.report()),
-        ("Time to an error, beside other programs", "peers", peers.tables()),
-        ("Growth with the number of elements", "growth", growth.tables()),
-        ("The error asked for and the error got", "honesty", honesty.table()),
-        ("How far a held end strays from its place, relative to the length", "homing", homing.table()),
-        ("Error of the tip, relative to the length", "convergence", convergence.tables()),
-    ]
+SECTIONS: tuple[tuple[str, str, Callable[[], str]], ...] = (
+    (
+        "A rate of a generated kernel, beside one written by hand",
+        "kernel_cost",
+        lambda: kernel_cost.table(kernel_cost.measure()),
+    ),
+    ("Bindings", "bindings", bindings.table),
+    ("Linear solvers", "linear_solvers", linear_solvers.table),
+    ("Whole runs from the shell, in seconds (minimum, median)", "startup", startup.table),
+    ("What each mode and each effect costs", "pruning", pruning.report),
+    ("Time to an error, beside other programs", "peers", peers.tables),
+    ("Growth with the number of elements", "growth", growth.tables),
+    ("The error asked for and the error got", "honesty", honesty.table),
+    ("How far a held end strays from its place, relative to the length", "homing", homing.table),
+    ("Error of the tip, relative to the length", "convergence", convergence.tables),
+)
+
+
+def _parts() -> Iterator[str]:
+    """The page, part by part as it is measured."""
+    yield f"# Measured\n\nOn {_machine()}.\n\n`make bench` measures all of it again. Shared machines are noisy:"
+    yield "trust ratios and minima rather than single times.\n"
+    for title, module, table in SECTIONS:
+        yield f"## {title}\n\n`python -m benchmarks.{module}`\n\n{table()}"
 
 
 def main() -> None:
-    """Runs all and writes the page."""
-    parts = [
-        "# Measured",
-        "",
-        f"On {_machine()}.",
-        "",
-        "`make bench` measures all of it again. Shared machines are noisy:",
-    ]
-    parts += ["trust ratios and minima rather than single times.", ""]
-    for title, module, table in _sections():
-        parts += [f"## {title}", "", f"`python -m benchmarks.{module}`", "", table]
-    page = "\n".join(parts)
-    (Path(__file__).parent / "RESULTS.md").write_text(page)
-    print(page)
+    """Runs all, prints each part as soon as it is measured, and writes the page when all are."""
+    parts = []
+    for part in _parts():
+        print(part, flush=True)
+        parts.append(part)
+    (Path(__file__).parent / "RESULTS.md").write_text("\n".join(parts))
 
 
 if __name__ == "__main__":
