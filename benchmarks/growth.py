@@ -60,8 +60,8 @@ def one(motion: str, elements: int) -> dict[str, float]:
 
 
 def peak() -> float:
-    """The most memory that this process had, in MiB. Where Linux says so in its files: what it says of usage has that of
-    the process before in it, from which this one was started."""
+    """The most memory that this process had, in MiB. On Linux from its own file: what is said of usage may be that of
+    the process that started it."""
     try:
         line = next(line for line in Path("/proc/self/status").read_text().splitlines() if line.startswith("VmHWM"))
         return int(line.split()[1]) / 2**10

@@ -96,8 +96,8 @@ def signature(folder: Path) -> dict[str, Any]:
 def test_the_kernel_stays_inside_the_memory_it_asks_for(
     name: str, degree: int, folders: Any, tmp_path: Path, c_compiler: str
 ) -> None:
-    """Under the address and undefined-behaviour sanitisers: the sizes that the kernel states are enough, and all of it is
-    given back, where the machine lets them look for leaks."""
+    """Under the address and undefined-behaviour sanitisers: what the kernel asks for is enough, and all is given
+    back, where the machine lets them look for leaks."""
     folder = tmp_path / "checked"
     shutil.copytree(folders(name, "c", degree), folder, ignore=shutil.ignore_patterns("driver"))
     flags = "-O0 -g -fsanitize=address,undefined -fno-sanitize-recover"
