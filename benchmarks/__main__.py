@@ -6,7 +6,18 @@ from collections.abc import Callable, Iterator
 from importlib.metadata import version
 from pathlib import Path
 
-from benchmarks import bindings, convergence, growth, homing, honesty, kernel_cost, linear_solvers, pruning, startup
+from benchmarks import (
+    bindings,
+    convergence,
+    growth,
+    homing,
+    honesty,
+    kernel_cost,
+    linear_solvers,
+    profile,
+    pruning,
+    startup,
+)
 from benchmarks.peers import __main__ as peers
 from geocosserat.kernel.compile import FLAGS, compiler
 
@@ -37,6 +48,7 @@ SECTIONS: tuple[tuple[str, str, Callable[[], str]], ...] = (
     ("Whole runs from the shell, in seconds (minimum, median)", "startup", startup.table),
     ("What each mode and each effect costs", "pruning", pruning.report),
     ("Time to an error, beside other programs", "peers", peers.tables),
+    ("Where the time of short runs goes", "profile", profile.table),
     ("Growth with the number of elements", "growth", growth.tables),
     ("The error asked for and the error got", "honesty", honesty.table),
     ("How far a held end strays from its place, relative to the length", "homing", homing.table),
