@@ -112,7 +112,6 @@ def profile(name: str) -> str:
         data = str(Path(folder) / "perf.data")
         used = {**os.environ, "CC": f"{compiler()} {APART}", "PYTHONPATH": str(ROOT), "OPENBLAS_NUM_THREADS": "1"}
         program = [sys.executable, "-m", "benchmarks.profile", name]
-        subprocess.run(program, cwd=ROOT, env={**used, "PROFILE": "warm"}, check=True, capture_output=True)
         subprocess.run([*program, "0"], cwd=ROOT, env=used, check=True, capture_output=True)  # compiles
         look = ["perf", "record", "-o", data, "-F", "5000", "-e", "cpu-clock", "-D", str(int(1e3 * QUIET)), *program]
         look.append(str(QUIET + LOOKED))
