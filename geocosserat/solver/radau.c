@@ -36,6 +36,10 @@ static const double CONTRACTION = 0.15, CONTRACTION_POWER = 2.5;
  * astray. Nor does it if its error was more than one over this of what it changed (of steps as long): it was too rough. */
 static const double FORESEEN = 2.5, SMOOTH = 10.0;
 
+/* Of the step that the error foretells this much is taken; not less after many rounds of Newton's method, for which steps
+ * are shortened by its contraction. */
+static const double SAFETY = 0.9;
+
 /* A first step may change the state by this share of it, times what the order of the method makes of the tolerance. */
 static const double FIRST = 0.2;
 
@@ -535,7 +539,7 @@ static double change_norm(const radau *r)
     return sqrt(total_of(one + other) / (r->m.stages * n));
 }
 
-/* Solves for the stages. Returns how many rounds that took, or 0 if it failed; `shrink`: then how much shorter to try. */
+/* Solves for the stages. Returns whether it did; if not, `shrink` is how much shorter to try. */
 static int solve_stages(radau *r, double *shrink)
 {
     const int n = r->moving + r->fixed, most = 7 + 2 * (r->m.stages - 3);
@@ -566,7 +570,7 @@ static int solve_stages(radau *r, double *shrink)
         if (share * size <= enough) {
             r->share = share;
             r->contraction = contraction;
-            return evaluate_stages(r) ? round : 0; /* the rates of what was found: of quadratures, and of the next start */
+            return evaluate_stages(r); /* the rates of what was found: of quadratures, and of the next start */
         }
         before = fmax(size, DBL_MIN);
     }
@@ -643,7 +647,6 @@ static void accept(radau *r, double error)
 /* One step that is accepted, however many are tried. */
 static int step(radau *r)
 {
-    const int most = 7 + 2 * (r->m.stages - 3);
     const double power = -1.0 / (r->m.stages + 1);
     int trouble = STANDSTILL; /* what made the step shorter */
     int doubt = r->contraction > RENEW ? MIDDLE : PAST; /* a Jacobian from before that will not do */
@@ -668,16 +671,15 @@ static int step(radau *r)
         r->factored = 1;
         r->steps += 1;
         double shrink;
-        const int rounds = solve_stages(r, &shrink);
-        if (!rounds) {
+        if (!solve_stages(r, &shrink)) {
             trouble = r->finite ? DIVERGED : NOT_FINITE;
             doubt = NOW;
             change_step(r, shrink * r->h);
             continue;
         }
         sum_quadratures(r);
-        const double error = estimate(r), safety = 0.9 * (1 + 2 * most) / (2 * rounds + 2 * most);
-        double factor_h = fmin(8.0, fmax(0.2, safety * pow(fmax(error, 1e-10), power)));
+        const double error = estimate(r);
+        double factor_h = fmin(8.0, fmax(0.2, SAFETY * pow(fmax(error, 1e-10), power)));
         if (!(error < 1.0)) {
             trouble = STANDSTILL;
             doubt = doubt > MIDDLE ? doubt : MIDDLE;
@@ -685,7 +687,7 @@ static int step(radau *r)
             continue;
         }
         if (r->last_h > 0.0) /* what the last two steps foretell, if less: errors stay more regular */
-            factor_h = fmin(factor_h, fmax(0.2, safety * r->h / r->last_h * pow(error * error / r->last_error, power)));
+            factor_h = fmin(factor_h, fmax(0.2, SAFETY * r->h / r->last_h * pow(error * error / r->last_error, power)));
         if (r->contraction > 0.0)
             factor_h = fmin(factor_h, fmax(1.0, pow(CONTRACTION / r->contraction, 1.0 / CONTRACTION_POWER)));
         if (failures)
