@@ -25,7 +25,7 @@ enum { PAST, MIDDLE, NOW }; /* a step before this one; where the middle of this 
 enum { MOST_FAILURES = 60, BREATH = 50 }; /* tries of one step; steps between two looks at the world outside */
 
 /* A Jacobian serves on as long as Newton's method with it leaves less than this of an error in each round: a new one
- * costs little more than a round, and is needed soon, for steps grow. */
+ * costs a few rounds, and is needed soon, for steps grow. */
 static const double RENEW = 0.03;
 
 /* What Newton's method should leave of an error in each round, and the power of the step with which that grows (measured
