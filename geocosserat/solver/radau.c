@@ -53,7 +53,8 @@ static const double UNSEEN = 0.1;
 
 /* The method: abscissae; weights; those of the embedded formula less them, as they act on the stages' displacements; and
  * its inverse, split by eigenvalues: value, row that picks its part, column that puts it back (first the real one, then
- * one of each complex pair). */
+ * one of each complex pair). The real one leaves room for a second system with the same matrix, which is that of the error:
+ * its row has an imaginary part, which picks that from the stages' rates. */
 typedef struct method {
     int stages;
     double node[MOST_STAGES], weight[MOST_STAGES][MOST_STAGES], error[MOST_STAGES];
@@ -94,6 +95,7 @@ typedef struct radau {
     int inner, *inner_rows;    /* of the matrix of the constraints: its size, padded, see BLOCK; the order in its factors */
     shifted linear;            /* what is left when they are eliminated */
     number g, *x;              /* the step over the method's eigenvalues; right-hand sides and solutions of their systems */
+    number *parts;             /* displacements of what moves; and, beside the real one, less what the slope says of the error */
     number row[MOST_STAGES];   /* the same as in the method: row[s] for all parts; the others for all stages */
     strip column[PAIRS + 1][2], weight[MOST_STAGES], node, error_weight;
     strip *gap, *closing, *made; /* of constraints and of what moves, for all stages: see `newton` */
@@ -419,12 +421,37 @@ static void solve_all(int n, const double *restrict A, const int *order, const s
     }
 }
 
+/* What the method's rows pick from the stages. */
+static inline number parts_of(const radau *r, const int S, const strip *stages)
+{
+    const double *own = (const double *)stages;
+    number sum = {{0.0}, {0.0}};
+    for (int s = 0; s < S; ++s) {
+        sum.re += own[s] * r->row[s].re;
+        sum.im += own[s] * r->row[s].im;
+    }
+    return sum;
+}
+
+/* Lanes of pairs. */
+static const lanes PAIRED = {0.0, 1.0, 1.0, 1.0};
+
+/* Takes displacements apart, before the first round. */
+static void take_apart(radau *r)
+{
+    for (int i = 0; i < r->moving; ++i) {
+        const int from = r->moves[r->linear.order[i]];
+        r->parts[i] = parts_of(r, r->m.stages, r->Z + from);
+        r->parts[i].im[0] = -r->g.re[0] * r->slope[from];
+    }
+}
+
 /* Newton's change of all stages into `change`, from rates F at displacements Z. */
 static inline void newton_of(radau *r, const int S)
 {
     const int n = r->size, d = r->moving, a = r->fixed, v = r->inner, *order = r->linear.order;
     const int *moves = r->moves, *fixes = r->fixes;
-    const strip *restrict Z = r->Z, *restrict F = r->F;
+    const strip *restrict F = r->F;
     const number g = r->g;
     strip *restrict change = r->change;
     strip *restrict made = r->made, *restrict closing = r->closing;
@@ -438,20 +465,14 @@ static inline void newton_of(radau *r, const int S)
         add_stages(d, a, d, r->coupling, closing, made);
     }
     for (int i = 0; i < d; ++i) { /* by parts, each in its lane */
-        const double *restrict own = (const double *)(made + order[i]), *restrict at = (const double *)(Z + moves[order[i]]);
-        number f = {{0.0}, {0.0}}, z = f;
-        for (int s = 0; s < S; ++s) {
-            f.re += own[s] * r->row[s].re;
-            f.im += own[s] * r->row[s].im;
-            z.re += at[s] * r->row[s].re;
-            z.im += at[s] * r->row[s].im;
-        }
-        f = times(g, f);
-        x[i] = (number){f.re - z.re, f.im - z.im};
+        const number f = times(g, parts_of(r, S, made + order[i]));
+        x[i] = (number){f.re - r->parts[i].re, f.im - r->parts[i].im};
     }
     solve_shifted(&r->linear, x);
     for (int i = 0; i < d; ++i) {
         strip sum = {0.0};
+        r->parts[i].re += x[i].re;
+        r->parts[i].im += PAIRED * x[i].im;
         for (int k = 0; k <= S / 2; ++k)
             sum += x[i].re[k] * r->column[k][0] - x[i].im[k] * r->column[k][1];
         change[moves[order[i]]] = made[order[i]] = sum;
@@ -546,6 +567,7 @@ static int solve_stages(radau *r, double *shrink)
     const double floor = fmin(0.3, 100.0 * DBL_EPSILON / r->rtol), enough = fmax(floor, fmin(NEWTON, NEWTON_ROOT * sqrt(r->rtol)));
     double before = 0.0, theta = 0.0, contraction = 0.0, share = fmax(UNSEEN, pow(r->share, 0.8));
     *shrink = 0.5;
+    take_apart(r);
     for (int round = 1; round <= most; ++round) {
         if (!evaluate_stages(r))
             return 0;
@@ -577,35 +599,43 @@ static int solve_stages(radau *r, double *shrink)
     return 0;
 }
 
-/* The error of the step in units of what it may be. `rate` is that at its start, or near it. */
-static double error_of(radau *r, const double *rate)
+/* The size of errors [size] of a step in units of what they may be; those of what constraints fix are not in it. */
+static double error_norm(const radau *r)
 {
-    const int n = r->size, d = r->moving, a = r->fixed, quadratures = n - d - a;
-    const double g = r->h / r->m.value[0][0];
-    for (int i = 0; i < n; ++i)
-        r->error[i] = g * rate[i] + total_of(r->error_weight * r->Z[i]);
-    for (int i = 0; i < d; ++i)
-        r->x[i] = (number){{r->error[r->moves[r->linear.order[i]]]}, {0.0}};
-    solve_shifted(&r->linear, r->x); /* of what moves: constraints hold */
-    for (int i = 0; i < d; ++i)
-        r->error[r->moves[r->linear.order[i]]] = r->x[i].re[0];
-    for (int i = 0; i < a; ++i)
-        r->error[r->fixes[i]] = 0.0;
-    const double total = squares(n, r->error, r->scale);
-    return sqrt(total / (d + quadratures));
+    return sqrt(squares(r->size, r->error, r->scale) / (r->size - r->fixed));
 }
 
-/* The same, looked at twice where it is too large: the first look exaggerates where the problem is stiff. */
+/* Errors before their linear systems are solved: the embedded formula less the method. `rate` is that at the start. */
+static double differs(const radau *r, int i, const double *rate)
+{
+    return r->g.re[0] * rate[i] + total_of(r->error_weight * r->Z[i]);
+}
+
+/* The error of the step in units of what it may be. Of what moves it was solved for in the last round: what that changed is
+ * far below an error. Where it is too large it is looked at once more, from the rate at a state that is off by it: the first
+ * look exaggerates where the problem is stiff. */
 static double estimate(radau *r)
 {
-    double error = error_of(r, r->slope), *rate = (double *)r->change; /* room that is free */
-    if (error >= 1.0) {
-        for (int i = 0; i < r->size; ++i)
-            r->trial[i] = r->y[i] + r->error[i];
-        if (evaluate(r, r->t, r->trial, rate))
-            error = error_of(r, rate);
-    }
-    return error;
+    const int d = r->moving, *order = r->linear.order;
+    double *rate = (double *)r->change; /* room that is free */
+    memset(r->error, 0, r->size * sizeof *r->error);
+    for (int i = 0; i < d; ++i)
+        r->error[r->moves[order[i]]] = r->x[i].im[0];
+    for (int i = d + r->fixed; i < r->size; ++i)
+        r->error[i] = differs(r, i, r->slope);
+    const double error = error_norm(r);
+    for (int i = 0; i < r->size; ++i)
+        r->trial[i] = r->y[i] + r->error[i];
+    if (!(error >= 1.0) || !evaluate(r, r->t, r->trial, rate))
+        return error;
+    for (int i = 0; i < d; ++i)
+        r->x[i] = (number){{differs(r, r->moves[order[i]], rate)}, {0.0}};
+    solve_shifted(&r->linear, r->x);
+    for (int i = 0; i < d; ++i)
+        r->error[r->moves[order[i]]] = r->x[i].re[0];
+    for (int i = d + r->fixed; i < r->size; ++i)
+        r->error[i] = differs(r, i, rate);
+    return error_norm(r);
 }
 
 static void change_step(radau *r, double h)
@@ -732,6 +762,7 @@ static size_t lay_out(radau *r, char *room)
         memset(room, 0, used); /* what pads matrices and right-hand sides */
     r->made = part_of(room, &used, d * sizeof *r->made);
     r->x = part_of(room, &used, d * sizeof *r->x);
+    r->parts = part_of(room, &used, d * sizeof *r->parts);
     s->upper = part_of(room, &used, d * (d + 1) / 2 * sizeof *s->upper);
     s->factor = part_of(room, &used, d * sizeof *s->factor);
     s->row = part_of(room, &used, d * sizeof *s->row);

@@ -104,6 +104,7 @@ def method(stages: int) -> np.ndarray[Any, np.dtype[np.void]]:
     made["error"][:stages] = differs @ inverse
     made["value"][: len(kept)] = values[kept]
     made["row"][: len(kept), :stages] = rows[kept]
+    made["row"][0, :stages] = rows[kept[0]].real + 1j * values[kept[0]].real * differs  # see radau.c
     made["column"][: len(kept), :stages] = (twice * columns[:, kept]).T
     return made
 

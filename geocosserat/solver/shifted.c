@@ -139,6 +139,14 @@ static inline void exchange_numbers(choice where, number *x, number *y)
     exchange_lanes(where, &x->im, &y->im);
 }
 
+static int any(choice where)
+{
+    long long all = 0;
+    for (int l = 0; l < LANES; ++l)
+        all |= where[l];
+    return all != 0;
+}
+
 /* Factors 1 - g H. Returns 1 if a lane is singular. */
 static int shift(shifted *s, number g)
 {
@@ -241,7 +249,7 @@ static void solve_shifted(const shifted *s, number *restrict x)
     for (; j > 0; j -= 2) { /* two columns at once: x is then read and written half as often */
         const number *restrict a = s->upper + j * (j + 1) / 2, *restrict b = a - j;
         const number f = x[j] = times(x[j], a[j]), g = x[j - 1] = times(less(x[j - 1], a[j - 1], f), b[j - 1]);
-        for (int i = 0; i < j - 1; ++i)
+        for (int i = j - 2; i >= 0; --i) /* what is waited for first */
             x[i] = less(less(x[i], a[i], f), b[i], g);
     }
     if (j == 0)
