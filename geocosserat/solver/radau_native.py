@@ -150,7 +150,9 @@ def radau_native(
     finally:
         if memory != ffi.NULL:
             lib.radau_free(memory)
-    return Trajectory(times[:done].copy(), states[:done], now.rates, now.jacobians, now.steps, done == count, reason)
+    if done == count:
+        return Trajectory(times.copy(), states, now.rates, now.jacobians, now.steps, True, reason)
+    return Trajectory(times[:done].copy(), states[:done], now.rates, now.jacobians, now.steps, False, reason)
 
 
 def _through(
@@ -158,12 +160,14 @@ def _through(
 ) -> tuple[int, str]:
     """Goes on until the end, or a frame that wants a pause, telling what is reached. Returns how many states there are,
     without those after a pause, and why it stopped before; empty if it did not."""
-    now, first, last, done, hope = place[3], float(times[0]), float(times[-1]), 1, None
+    now, instants, done, hope = place[3], times.tolist(), 1, None
+    first, last = instants[0], instants[-1]
     while True:
-        while done < now.done:
-            progress((float(times[done]) - first) / (last - first), now.steps)
+        steps, reached = now.steps, now.done
+        while done < reached:
+            progress((instants[done] - first) / (last - first), steps)
             done += 1
-            if frame(done - 1, states[done - 1], now.steps):
+            if frame(done - 1, states[done - 1], steps):
                 return done, ""
         if now.code < 0:
             return done, f"Radau stopped at t = {now.t:.6g} after {now.steps} steps: {REASONS[now.code]}"

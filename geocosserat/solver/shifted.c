@@ -139,14 +139,6 @@ static inline void exchange_numbers(choice where, number *x, number *y)
     exchange_lanes(where, &x->im, &y->im);
 }
 
-static int any(choice where)
-{
-    long long all = 0;
-    for (int l = 0; l < LANES; ++l)
-        all |= where[l];
-    return all != 0;
-}
-
 /* Factors 1 - g H. Returns 1 if a lane is singular. */
 static int shift(shifted *s, number g)
 {

@@ -13,7 +13,7 @@ Frame = Callable[[int, Array, int], bool]
 What it returns says whether to pause there."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False, slots=True)  # frozen, it would take a microsecond to make
 class Trajectory:
     """States at the instants asked for.
 
