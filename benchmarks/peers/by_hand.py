@@ -14,7 +14,7 @@ import cffi
 import numpy as np
 
 from benchmarks.peers.problems import UNTIL, Problem, error_of_strains, strain
-from benchmarks.peers.warm import warm
+from benchmarks.warm import warm
 from geocosserat.discretisation.mesh import Array
 from geocosserat.kernel.compile import opened
 

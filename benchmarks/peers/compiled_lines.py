@@ -20,7 +20,7 @@ from sksundae.cvode import CVODE
 
 from benchmarks.peers.lines import begin, error_of_state
 from benchmarks.peers.problems import UNTIL, Problem
-from benchmarks.peers.warm import warm
+from benchmarks.warm import warm
 from geocosserat.discretisation.mesh import Array
 
 MOST_STEPS = 20_000

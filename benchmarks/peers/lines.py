@@ -26,7 +26,7 @@ from scipy.sparse import diags_array as diags
 from scipy.sparse import kron, spmatrix
 
 from benchmarks.peers.problems import UNTIL, Problem, error, error_of_strains, start, strain
-from benchmarks.peers.warm import warm
+from benchmarks.warm import warm
 from geocosserat.discretisation.mesh import Array
 
 METHODS = ("lsoda", "bdf")

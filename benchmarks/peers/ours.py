@@ -14,7 +14,7 @@ import numpy as np
 
 from benchmarks.peers.problems import UNTIL, Problem, error_of_strains, rod_of
 from benchmarks.peers.statics import LOAD, STIFFNESS, tip
-from benchmarks.peers.warm import warm
+from benchmarks.warm import warm
 from geocosserat.conductor.kernels import kernel_text
 from geocosserat.discretisation.semidiscrete import SemiDiscrete, discretise
 from geocosserat.kernel.load import load
