@@ -50,13 +50,26 @@ static void exchange(int count, int apart, double *x, double *y)
     }
 }
 
-/* One elimination, from both sides: from column m on less multiples y of row m for the rows, and then all columns times y
- * added to column m. In one pass, for a strip of rows at a time; two sums, since each waits for its last addition. */
+/* One elimination, from both sides: from column m on less multiples y of row m for the rows below it, and then all columns
+ * times y added to column m. In one pass, for a strip of rows at a time; two sums, since each waits for its last addition. */
 static inline void eliminate(int width, int m, int size, double *A, const double *y)
 {
     strip *to = (strip *)(A + m * width);
     const double corner = A[m * width + m];
-    for (int top = 0; top < width; top += ROWS, ++to) {
+    int top = 0;
+    for (; top + ROWS <= m; top += ROWS, ++to) { /* rows above: columns only */
+        const double *column = A + (m + 1) * width + top;
+        strip sum = *to, more = {0.0};
+        int j = m + 1;
+        for (; j + 1 < size; j += 2, column += 2 * width) {
+            sum += y[j] * *(const strip *)column;
+            more += y[j + 1] * *(const strip *)(column + width);
+        }
+        if (j < size)
+            sum += y[j] * *(const strip *)column;
+        *to = sum + more;
+    }
+    for (; top < width; top += ROWS, ++to) {
         const strip own = *(const strip *)(y + top);
         strip sum = *to - corner * own, more = 0.0 * own;
         int j = m + 1;
