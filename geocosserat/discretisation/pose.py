@@ -74,6 +74,19 @@ def _relative(mesh: Mesh, turn: Array) -> tuple[Array, Array, Array | None]:
     return rotation, np.einsum("mq,...qi->...mi", table.running, step), angle
 
 
+def _products(steps: Array) -> Array:
+    """Of the first one, the first two, ... of rotations (..., n, space, space); from pairs of them, so that no loop
+    runs over elements."""
+    n = steps.shape[-3]
+    if n == 1:
+        return steps
+    even = _products(steps[..., : n - 1 : 2, :, :] @ steps[..., 1::2, :, :])
+    out = np.empty_like(steps)
+    out[..., 0, :, :], out[..., 1::2, :, :] = steps[..., 0, :, :], even
+    out[..., 2::2, :, :] = even[..., : (n - 1) // 2, :, :] @ steps[..., 2::2, :, :]
+    return out
+
+
 def march(
     mesh: Mesh, turn: Array, position: Array, rotation: Array, angle: Array | None = None, end: str = "left"
 ) -> Poses:
@@ -88,16 +101,17 @@ def march(
     relative, offset, gained = _relative(mesh, local)
     batch = turn.shape[:-2]
     R, r = np.empty((*batch, n + 1, space, space)), np.empty((*batch, n + 1, space))
+    base = np.asarray(rotation)[..., None, :, :]
     if end == "left":
         R[..., 0, :, :], r[..., 0, :] = rotation, position
-        for e in range(n):
-            R[..., e + 1, :, :] = R[..., e, :, :] @ relative[..., e, p, :, :]
-            r[..., e + 1, :] = r[..., e, :] + (R[..., e, :, :] @ offset[..., e, p, :, None])[..., 0]
+        R[..., 1:, :, :] = base @ _products(relative[..., p, :, :])
+        r[..., 1:, :] = (R[..., :-1, :, :] @ offset[..., p, :, None])[..., 0]
+        np.cumsum(r, axis=-2, out=r)
     else:
         R[..., n, :, :], r[..., n, :] = rotation, position
-        for e in range(n - 1, -1, -1):
-            R[..., e, :, :] = R[..., e + 1, :, :] @ relative[..., e, p, :, :].swapaxes(-1, -2)
-            r[..., e, :] = r[..., e + 1, :] - (R[..., e, :, :] @ offset[..., e, p, :, None])[..., 0]
+        R[..., n - 1 :: -1, :, :] = base @ _products(relative[..., ::-1, p, :, :].swapaxes(-1, -2))
+        r[..., n - 1 :: -1, :] = -(R[..., n - 1 :: -1, :, :] @ offset[..., ::-1, p, :, None])[..., 0]
+        np.cumsum(r[..., ::-1, :], axis=-2, out=r[..., ::-1, :])
     rotations = R[..., :-1, None, :, :] @ relative
     positions = r[..., :-1, None, :] + (R[..., :-1, None, :, :] @ offset[..., None])[..., 0]
     frames = np.concatenate([rotations[..., :p, :, :].reshape(*batch, n * p, space, space), R[..., -1:, :, :]], axis=-3)
