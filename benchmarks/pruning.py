@@ -31,11 +31,12 @@ ACCURACIES = tuple(10.0**-k for k in range(4, 11))
 METHODS = ("cvode", "radau")
 How = tuple[str, Setting]
 SETTINGS: list[How] = [
-    (method, Setting(1, p, 10.0**-k)) for method, p, k in product(METHODS, (5, 6, 7, 8, 10, 12), range(1, 9))
+    (method, Setting(1, p, 10.0 ** (-k / 2)))
+    for method, p, k in product(METHODS, (5, 6, 7, 8, 9, 10, 12), range(2, 17))
 ]
 MORE: list[How] = [
-    (method, Setting(1, p, 10.0**-k))
-    for method, p, k in product(METHODS, (5, 6, 7, 8, 9, 10, 12, 14, 16), range(1, 12))
+    (method, Setting(1, p, 10.0 ** (-k / 2)))
+    for method, p, k in product(METHODS, (5, 6, 7, 8, 9, 10, 12, 14, 16), range(2, 23))
 ]
 FINE: How = ("radau", Setting(1, 20, 1e-12))
 BEND = "3*(1 - u)**2*(1 + 2*u)"

@@ -1,8 +1,8 @@
 """This project beside its peers, on the same problems to the same errors: python -m benchmarks.peers [--quick] [--json
 F].
 
-Markdown on standard output. Times are milliseconds, minimum (median) of five runs, warm; then how many times ours;
-then the setting that was found to be the cheapest. `--quick` measures one motion in the plane and fewer accuracies.
+Markdown on standard output. Times are milliseconds, minimum (median) of five runs, each right after another one; then
+how many times ours; then the setting that was found to be the cheapest. `--quick` measures one motion in the plane and fewer accuracies.
 The optional libraries are the extra `bench`; where one is missing its row says so.
 """
 
