@@ -2,8 +2,8 @@
 F].
 
 Markdown on standard output. Times are milliseconds, minimum (median) of five runs, each right after another one; then
-how many times ours; then the setting that was found to be the cheapest. `--quick` measures one motion in the plane and fewer accuracies.
-The optional libraries are the extra `bench`; where one is missing its row says so.
+how many times ours; then the setting that was found to be the cheapest. `--quick` measures one motion in the plane and
+fewer accuracies. The optional libraries are the extra `bench`; where one is missing its row says so.
 """
 
 import argparse
