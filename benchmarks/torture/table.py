@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import re
+from collections.abc import Callable, Iterator, Sequence
+from typing import TypeVar
 
 from benchmarks.torture.judge import OUTCOMES, REFUSED, SURVIVED, Verdict
 
@@ -14,12 +16,14 @@ LEGEND = (
     "Ledger: relative to its largest term; rise: of the energy of a rod on which nothing acts, relative to that at the",
     "start; error: over the one asked for. Each is the worst of the cases that were survived.",
 )
+NUMERAL = re.compile(r"-?\b\d[\d.]*(e[+-]?\d+)?")
+T = TypeVar("T")
 Number = Callable[[Verdict], float | None]
 NUMBERS: tuple[Number, ...] = (lambda v: v.ledger, lambda v: v.rise, lambda v: v.error)
 
 
 def table(verdicts: Sequence[Verdict]) -> str:
-    """A line for each method, then one for each case that a method did not survive."""
+    """A line for each method, then one for each reason for which a method did not survive a case."""
     methods = list(dict.fromkeys(v.method for v in verdicts))
     lines = [
         f"| {' | '.join(('method', 'cases', *OUTCOMES, *COLUMNS))} |",
@@ -33,8 +37,26 @@ def table(verdicts: Sequence[Verdict]) -> str:
         lines.append(f"| {' | '.join(map(str, (method, len(own), *counts, fell, *worst)))} |")
     lines += ["", *LEGEND, ""]
     told = [v for v in verdicts if v.outcome != SURVIVED and (v.method, v.outcome) != (PEER, REFUSED)]
-    lines += [f"* {v.case}, {v.method}: {v.outcome}: {v.why}" for v in told]
-    return "\n".join(lines)
+    return "\n".join((*lines, *_reasons(told)))
+
+
+def _reasons(verdicts: Sequence[Verdict]) -> Iterator[str]:
+    """Each outcome and reason once, the methods it is of, and the cases: reasons that differ in numbers alone are one,
+    told with those of the first case."""
+    for of_kind in _grouped(verdicts, lambda v: (v.outcome, NUMERAL.sub("", v.why))):
+        by_case = _grouped(of_kind, lambda v: v.case)
+        by_methods = _grouped(by_case, lambda own: ", ".join(v.method for v in own))
+        yield f"* {of_kind[0].outcome}: {of_kind[0].why or 'no reason'}"
+        for own in by_methods:
+            yield f"  * {', '.join(v.method for v in own[0])} ({len(own)}): {'; '.join(of[0].case for of in own)}"
+
+
+def _grouped(things: Sequence[T], key: Callable[[T], object]) -> list[list[T]]:
+    """Those of the same key together, in the order in which keys come."""
+    found: dict[object, list[T]] = {}
+    for thing in things:
+        found.setdefault(key(thing), []).append(thing)
+    return list(found.values())
 
 
 def _worst(verdicts: Sequence[Verdict], number: Number) -> str:

@@ -150,7 +150,30 @@ def test_the_table_counts_every_verdict() -> None:
     lines = table(some).splitlines()
     assert "| auto | 3 | 2 | 1 | 0 | 0 | 1 | 2.0e-06 | 1.0e-09 | 5.0e-01 |" in lines
     assert "| bdf | 1 | 0 | 0 | 1 | 0 | 0 | - | - | - |" in lines
-    assert lines[-2:] == ["* c, auto: refused: too hard", "* a, bdf: failed: NaN"]
+    assert lines[-4:] == ["* refused: too hard", "  * auto (1): c", "* failed: NaN", "  * bdf (1): a"]
+
+
+def test_the_table_tells_a_reason_once() -> None:
+    """Whatever its numbers; names of cases and methods stay apart."""
+    some = [
+        Verdict("a", "auto", CUT_OFF, "it took more than 180 seconds"),
+        Verdict("a", "bdf", CUT_OFF, "it took more than 60 seconds"),
+        Verdict("b", "bdf", CUT_OFF, "it took more than 6e+01 seconds"),
+        Verdict("b", "auto", REFUSED, "h1 is less than h2"),
+        Verdict("c", "auto", REFUSED, "h1 is less than h3"),
+        Verdict("d", "auto", CUT_OFF, "it took more than 180 seconds"),
+        Verdict("e", "bdf", CUT_OFF, "it took more than 60 seconds"),
+    ]
+    assert table(some).splitlines()[-8:] == [
+        "* cut off: it took more than 180 seconds",
+        "  * auto, bdf (1): a",
+        "  * bdf (2): b; e",
+        "  * auto (1): d",
+        "* refused: h1 is less than h2",
+        "  * auto (1): b",
+        "* refused: h1 is less than h3",
+        "  * auto (1): c",
+    ]
 
 
 def test_every_case_is_a_scene_that_the_program_reads() -> None:
