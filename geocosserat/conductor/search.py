@@ -29,6 +29,7 @@ from geocosserat.planning.settings import (
     tolerance,
 )
 from geocosserat.results.checkpoint import Keeper
+from geocosserat.solver.integrate import LAST_RESORTS
 
 LEDGER = 10.0
 """What the balance of energy may lack, in units of the accuracy."""
@@ -95,7 +96,9 @@ class _Search:
         # of the model itself: rotations without friction keep a little of it
         modelled = left_of_friction(self.scene.run) if frictionless(self.scene.model) else 0.0
         points = tuple(elements * degree for elements, degree in SIZES)
-        choice = Choice(points, lambda size: most_decades(self._method(size), self.accuracy), self._method)
+        choice = Choice(
+            points, lambda size: most_decades(self._method(size), self.accuracy), self._method, self._lands
+        )
         wanted = self.accuracy - modelled if self.accuracy > 1.05 * modelled else modelled
         steps = plan(wanted, choice, Errors(self._gap, self._strayed, self._unbalanced), self.first)
         request = next(steps)
@@ -157,6 +160,10 @@ class _Search:
         elements, degree = SIZES[max(size, self.first + 1)]  # the first run is there to be compared with the second
         unknowns = elements * degree * (self.scene.model.group.dimension - len(self.scene.model.frozen))
         return "radau" if self.simulate.backend == "c" and unknowns <= LARGEST_DENSE else "cvode"
+
+    def _lands(self, size: int) -> bool:
+        """Whether frames between the first and the last end steps of the integrator, which others interpolate."""
+        return self._method(size) in LAST_RESORTS and self.scene.run.frames > 2
 
     def _predicted(self, setting: Setting) -> float | None:
         """Seconds that a run at a setting should take, by the last one that the same method has made."""

@@ -3,7 +3,8 @@
 The first run is rough, the second one a size, and one and a half decades of tolerance, finer. Their gap is the error
 of the first; by how much less that of the second is, orders foretell, cautiously. Where that is not enough, a third
 one, with the mesh of the first and the tolerance of the second, tells the error in space from that in time, and only
-what needs it is refined.
+what needs it is refined. Methods that end a step at each frame are asked for one more run wherever the tolerance is
+refined, without the frames: two runs whose steps are those of their frames agree, and may both be wrong.
 
 Nothing here depends on a clock: a scene is computed with the same settings on every machine.
 """
@@ -49,11 +50,13 @@ class Verdict:
 @dataclass(frozen=True)
 class Choice:
     """What there is to choose from. points: of each size. finest (decades), method: of a size; the errors of two
-    methods say nothing of each other."""
+    methods say nothing of each other. lands: whether the method of a size makes a step end at each frame, of which
+    runs that are kept have many: where these shorten its steps, its errors do not fall with the tolerance."""
 
     points: tuple[int, ...]
     finest: Callable[[int], float]
     method: Callable[[int], str]
+    lands: Callable[[int], bool] = lambda _: False
 
     def growth(self, old: Level, new: Level) -> float:
         """How many times as many points the new level has."""
@@ -94,6 +97,7 @@ def plan(accuracy: float, choice: Choice, errors: Errors, first: int = 0) -> Gen
     comparable = yield Request(old, whole=False)
     in_space, in_time = Guess(), Guess()
     estimate: float | None = None
+    whole = False
     while asked < MOST_RUNS:
         size = _next_size(choice, old.size, SHARE * accuracy, in_space)
         if choice.method(size) != choice.method(old.size):  # begin again with that one
@@ -106,7 +110,12 @@ def plan(accuracy: float, choice: Choice, errors: Errors, first: int = 0) -> Gen
         if not (yield Request(new, whole=True)):  # then the one before, if it was whole
             return Verdict(kept if estimate is None else before, estimate, False)
         if comparable:
-            gap, decades, growth = errors.gap(before, kept), new.decades - old.decades, choice.growth(old, new)
+            decades, growth = new.decades - old.decades, choice.growth(old, new)
+            if decades > 0.0 and whole and choice.lands(new.size):
+                asked += 1
+                if (yield Request(old, whole=False)):
+                    before = asked - 1
+            gap = errors.gap(before, kept)
             coarse = 0.0 if growth == 1.0 else gap  # the error in space of the mesh before
             if growth == 1.0:
                 in_time = _finer_in_time(gap, decades)
@@ -129,7 +138,7 @@ def plan(accuracy: float, choice: Choice, errors: Errors, first: int = 0) -> Gen
             estimate = in_space.cautious + in_time.cautious
             if estimate <= accuracy:
                 return Verdict(kept, estimate, True)
-        old, comparable = new, True
+        old, comparable, whole = new, True, True
     return Verdict(kept, estimate, False)
 
 

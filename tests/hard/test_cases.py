@@ -17,7 +17,7 @@ OF_EACH_FAMILY = (
     "spatial, stiffness 1:1e+10", "spatial, rotational friction 0", "reference with jumps", "white noise, spatial",
     "stretched ten times", "step load on and off", "a million relaxation times, frozen", "microns, spatial, loaded",
     "base turned by a hundred turns, planar", "one element of degree 1", "column buckles", "inextensible ring",
-    "weight and follower, planar", "hardening rod", "noise too fine to be seen",
+    "weight and follower, planar", "couple and couple, spatial", "hardening rod", "noise too fine to be seen",
 )  # fmt: skip
 REFUSALS = ("noise too fine to be seen",)
 """Cases that nobody should claim to have computed."""

@@ -34,20 +34,27 @@ class Problem:
     unbalanced: float = 0.0
     blind: int = 0
     """Sizes below this one miss the motion: they are far off, and whatever the steps."""
+    landed: float | None = None
+    """What frames leave of most of the error in time of a run that keeps many, where that is less."""
+    told: bool = True
+    """Whether the plan is told that steps end at frames."""
     runs: list[Request] = field(default_factory=list)
     vectors: list[np.ndarray] = field(default_factory=list)
 
     def method(self, size: int) -> str:
         return "small" if size < self.switch else "large"
 
-    def error(self, level: Level) -> np.ndarray:
-        """The same for the same level, as a program's would be."""
+    def error(self, level: Level, whole: bool = False) -> np.ndarray:
+        """The same for the same request, as a program's would be."""
         which = [self.seed, level.size]
         if level.size < self.blind:
             return self._off(np.random.default_rng(which), 1.0)
         in_space = np.random.default_rng(which)
         in_time = np.random.default_rng([*which, round(1000 * level.decades), level.size >= self.switch])
         space, time = self.space * self.ratio ** POINTS[level.size], self.time * 10.0 ** (-self.order * level.decades)
+        if self.landed is not None:
+            late = min(0.8 * time, self.landed) if whole else 0.8 * time
+            return self._off(in_space, space) + self._off(in_time, 0.2 * time) + late * np.array([1.0, 0.0, 0.0, 0.0])
         return self._off(in_space, space) + self._off(in_time, time)
 
     def _off(self, chance: np.random.Generator, size: float) -> np.ndarray:
@@ -57,7 +64,8 @@ class Problem:
 
     def solve(self, accuracy: float, finest: float = 12.0, first: int = 0) -> Verdict:
         """Runs the plan."""
-        choice = Choice(POINTS, lambda _: finest, self.method)
+        lands = self.told and self.landed is not None
+        choice = Choice(POINTS, lambda _: finest, self.method, lambda _: lands)
         errors = Errors(
             lambda i, j: float(np.linalg.norm(self.vectors[i] - self.vectors[j])),
             lambda _: self.strayed,
@@ -67,7 +75,7 @@ class Problem:
         request = next(steps)
         while True:
             self.runs.append(request)
-            self.vectors.append(self.error(request.level))
+            self.vectors.append(self.error(request.level, request.whole))
             try:
                 request = steps.send(len(self.runs) - 1 not in self.stops)
             except StopIteration as end:
@@ -218,3 +226,26 @@ def test_steps_on_a_mesh_that_misses_the_motion_tell_nothing() -> None:
         verdict = problem.solve(1e-4)
         assert verdict.reached
         assert problem.truth(verdict) < 1e-4
+
+
+@pytest.mark.parametrize("told", [True, False])
+def test_steps_that_frames_shorten_are_not_taken_for_accurate_ones(told: bool) -> None:
+    """Two runs whose steps are those of their frames agree, whatever their tolerances, and may both be wrong."""
+    missed = 0
+    for seed in range(40):
+        problem = Problem(seed, space=1e-8, time=1e-2, order=0.6, landed=1.5e-4, told=told)
+        verdict = problem.solve(1e-4)
+        assert verdict.reached
+        missed += problem.truth(verdict) > 1.1e-4
+    assert missed == 0 if told else missed > 20
+
+
+def test_whole_runs_are_compared_with_others_only_where_steps_end_at_frames() -> None:
+    """It costs a run for each that is refined."""
+    plain = Problem(3, space=1e-8, time=1e-2, order=0.7)
+    plain.solve(1e-5)
+    lands = Problem(3, space=1e-8, time=1e-2, order=0.7, landed=1.0)
+    lands.solve(1e-5)
+    assert [run.whole for run in plain.runs] == [False, True, False, True, True]
+    assert [run.whole for run in lands.runs] == [False, True, False, True, False, True, False]
+    assert [run.level for run in lands.runs[4::2]] == [run.level for run in lands.runs[1:4:2]]
