@@ -15,7 +15,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-FLAGS = "-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer -g"
+FLAGS = "-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer -g1"
 RUNTIMES = ("libasan.so", "libubsan.so")
 DEFAULT = ("tests/kernel", "tests/solver", "tests/statics", "tests/physics")
 WRONG = {
