@@ -14,14 +14,14 @@ def main() -> None:
         interrupts.append(number)
         signal.default_int_handler(number, frame)
 
-    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # else somebody wants it ignored
-        signal.signal(signal.SIGINT, interrupt)
     try:
+        if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # else somebody wants it ignored
+            signal.signal(signal.SIGINT, interrupt)
         from geocosserat.cli import program
 
         program()
     except (Exception, KeyboardInterrupt, SystemExit) as end:
-        if not interrupts:
+        if not interrupts and not isinstance(end, KeyboardInterrupt):
             raise
         code = end.code or 0 if isinstance(end, SystemExit) else 3
         if not isinstance(end, SystemExit):

@@ -377,6 +377,20 @@ def test_an_interrupt_during_imports_is_quiet(library: str, error: str, cantilev
     assert (out / "solution.nc").exists() == (library == "matplotlib")
 
 
+@pytest.mark.parametrize("name", ["getsignal", "signal"])
+def test_an_interrupt_as_the_program_begins_is_quiet(name: str) -> None:
+    """Before it has seen to interrupts, and as it does so."""
+    code = (
+        "import signal\nfrom geocosserat.__main__ import main\n"
+        f"whole = signal.{name}\n"
+        "def interrupted(*given):\n    found = whole(*given)\n    signal.raise_signal(signal.SIGINT)\n"
+        "    return found\n"
+        f"signal.{name} = interrupted\nmain()"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (3, "", "geocosserat: interrupted\n")
+
+
 def test_resuming_nothing_is_refused_in_one_line(cantilever: str, tmp_path: Path) -> None:
     """No folder named, or none there."""
     assert "--resume: expected the folder of the interrupted run" in refused(call("run", cantilever, "--resume"))

@@ -86,10 +86,13 @@ AS_IT_IS = Case("driven", _fixed(64, 8, 1e-11, "cvode", "run.frames=2001", "run.
 
 
 def start(arguments: Sequence[str], said: Path, prepare: Callable[[], None] = lambda: None) -> int:
-    """The program in a process of its own, by its number; what it says of errors goes to a file."""
+    """The program in a process of its own, by its number; what it says of errors goes to a file. An interrupt that
+    comes before it has begun waits until then."""
     said.parent.mkdir(parents=True, exist_ok=True)
+    signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     child = os.fork()
     if child:
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
         return child
     code = 1
     try:
@@ -99,7 +102,7 @@ def start(arguments: Sequence[str], said: Path, prepare: Callable[[], None] = la
         sys.argv = ["geocosserat", *arguments]
         signal.signal(signal.SIGINT, signal.default_int_handler)
         prepare()
-        main()
+        _begun()
         code = 0
     except SystemExit as end:
         code = end.code if isinstance(end.code, int) else 0 if end.code is None else 1
@@ -107,6 +110,19 @@ def start(arguments: Sequence[str], said: Path, prepare: Callable[[], None] = la
         traceback.print_exc()
     finally:
         os._exit(code)
+
+
+def _begun() -> None:
+    """The program; interrupts are let through where it first asks who looks after them."""
+    asked = signal.getsignal
+
+    def first(number: int) -> object:
+        signal.getsignal = asked
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+        return asked(number)
+
+    signal.getsignal = first  # type: ignore[assignment]
+    main()
 
 
 def wait(child: int) -> int:
