@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from geocosserat.conductor.simulate import Attempt, Simulator, chosen_setting, drift, misplaced, unbalanced
+from geocosserat.conductor.simulate import Attempt, Simulator, chosen_setting, drift, misplaced, turned, unbalanced
 from geocosserat.conductor.undetermined import undetermined
 from geocosserat.discretisation.mesh import Array, Mesh
 from geocosserat.discretisation.sampling import frictionless, left_of_friction
@@ -34,6 +34,10 @@ from geocosserat.solver.integrate import LAST_RESORTS
 LEDGER = 10.0
 """What the balance of energy may lack, in units of the accuracy."""
 
+
+LONGEST_TURN = 1.0
+"""By how many radians a rod may turn in a step that is looser than the accuracy: what turns with it or stays behind may
+be passed over, and two runs whose steps pass over it agree."""
 
 BLIND = 0.1
 """A mesh that misses so large a part of something that varies along the rod has not seen it: no run on it counts."""
@@ -133,7 +137,7 @@ class _Search:
             attempt = self._simulated(number, setting, whole)
         if known is None:
             assert attempt is not None
-            known = _left(self.scene, attempt)
+            known = _left(self.scene, attempt, self.accuracy)
             self.keeper.end(known)
         mesh = attempt.rod.mesh if attempt else discretise(self.scene, setting.elements, setting.degree).mesh
         if known.shape not in ((1, self.scene.model.group.space), (len(mesh.u) + 1, self.scene.model.group.space)):
@@ -190,9 +194,9 @@ class _Search:
         return self.outcomes[number].unbalanced / LEDGER
 
 
-def _left(scene: Scene, attempt: Attempt) -> Array:
+def _left(scene: Scene, attempt: Attempt, accuracy: float) -> Array:
     """Where a run left the rod, as one array: how far it strayed and what the balance of energy lacks, in a row of
-    their own, then positions (nodes, space), if any."""
+    their own, then positions (nodes, space), if any. A balance that steps have passed over lacks all."""
     rod, trajectory = attempt.rod, attempt.trajectory
     space = rod.structure.group.space
     if not trajectory.reached:
@@ -200,7 +204,8 @@ def _left(scene: Scene, attempt: Attempt) -> Array:
     positions = rod.poses(trajectory.states[-1], trajectory.times[-1]).position
     first = np.zeros((1, space))
     astray = max(drift(rod, trajectory), misplaced(rod, trajectory))
-    first[0, :2] = astray, unbalanced(scene, attempt)
+    passed_over = attempt.setting.rtol > accuracy and turned(attempt) > LONGEST_TURN
+    first[0, :2] = astray, LEDGER if passed_over else unbalanced(scene, attempt)
     return np.concatenate([first, positions])
 
 

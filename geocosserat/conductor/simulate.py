@@ -258,6 +258,15 @@ def unbalanced(scene: Scene, attempt: Attempt) -> float:
     return float(abs(stored + dissipated - work) / scale)
 
 
+def turned(attempt: Attempt) -> float:
+    """By how many radians the rod turns in a step, at the pace it has at the end, where it turns fastest."""
+    trajectory, group = attempt.trajectory, attempt.rod.structure.group
+    end = float(trajectory.times[-1])
+    twist = attempt.kernel.observe(end, trajectory.states[-1])[0]
+    pace = float(np.linalg.norm(twist[group.translations :], axis=0).max())
+    return pace * (end - float(trajectory.times[0])) / max(trajectory.steps, 1)
+
+
 def _check_room(frames: int, size: int) -> None:
     """Raises InputError if the states of all frames would not fit into memory."""
     if frames * size > MOST_NUMBERS:

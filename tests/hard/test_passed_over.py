@@ -1,0 +1,49 @@
+"""Rods that turn by more than a radian in a step: what such steps pass over is not taken for computed."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import geocosserat
+from benchmarks.torture.case import planar, spatial
+from geocosserat.conductor import search
+from geocosserat.kernel.compile import compiler
+
+SPUN: dict[str, Any] = {
+    "ends__left": {"kind": "driven", "twist": [0, 0, 0, "200*pi", 0, 0]},
+    "run__until": 1.0,
+    "start__strain": None,
+    "rod__reference": [1, 0, 0, 0, 0.5, 0],
+}
+"""A bent rod whose base is spun by a hundred turns: its bend stays behind, and is passed over by steps of a turn."""
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(compiler() is None, reason="Radau is compiled")
+@pytest.mark.parametrize(("frozen", "method", "accuracy"), [
+    (["h1", "h2", "h3"], None, 1e-3), ([], "radau", 1e-3), ([], "radau", 1e-4), ([], "radau", 1e-5),
+])  # fmt: skip
+def test_a_rod_that_is_spun_is_as_accurate_as_it_says(frozen: list[str], method: str | None, accuracy: float) -> None:
+    """Two runs by Radau with steps as long as turns agree on an end that is wrong by up to 400 times the accuracy."""
+    scene = spatial(**SPUN, rod__frozen=frozen)
+    settings = [] if method is None else [f"run.method={method}"]
+    found = geocosserat.run(scene, settings=[*settings, f"run.accuracy={accuracy}"])
+    known = geocosserat.run(scene, settings=["run.accuracy=1e-7", "run.frames=2"])
+    assert found.reached
+    assert found.method == "radau"
+    assert np.linalg.norm(np.subtract(found.tip["position"], known.tip["position"])) < accuracy
+
+
+def _runs(monkeypatch: pytest.MonkeyPatch, angle: float) -> int:
+    """How many runs a plan takes for a rod at rest that seems to turn by so many radians in a step."""
+    monkeypatch.setattr(search, "turned", lambda _: angle)
+    scene = planar(run__backend="numpy", run__method="radau", run__frames=3, run__accuracy=1e-2)
+    return len(geocosserat.run(scene).solution.plan)
+
+
+def test_steps_that_turn_a_rod_far_are_refined(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Until their tolerance is that of the accuracy, and not where they are short."""
+    assert _runs(monkeypatch, 2.0) > _runs(monkeypatch, 0.5)
