@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 from typing import TypeVar
 
-from benchmarks.torture.judge import OUTCOMES, REFUSED, SURVIVED, Verdict
+from benchmarks.torture.judge import FAILED, OUTCOMES, REFUSED, SURVIVED, Verdict
 
 PEER = "lines"
 """The method of lines, which refuses most cases."""
@@ -41,9 +41,9 @@ def table(verdicts: Sequence[Verdict]) -> str:
 
 
 def _reasons(verdicts: Sequence[Verdict]) -> Iterator[str]:
-    """Each outcome and reason once, the methods it is of, and the cases: reasons that differ in numbers alone are one,
+    """Each outcome and reason once, the methods it is of, and the cases: but for failures, reasons that differ in numbers alone are one,
     told with those of the first case."""
-    for of_kind in _grouped(verdicts, lambda v: (v.outcome, NUMERAL.sub("", v.why))):
+    for of_kind in _grouped(verdicts, lambda v: (v.outcome, v.why if v.outcome == FAILED else NUMERAL.sub("", v.why))):
         by_case = _grouped(of_kind, lambda v: v.case)
         by_methods = _grouped(by_case, lambda own: ", ".join(v.method for v in own))
         yield f"* {of_kind[0].outcome}: {of_kind[0].why or 'no reason'}"

@@ -40,7 +40,7 @@ def test_a_rod_that_is_spun_is_as_accurate_as_it_says(frozen: list[str], method:
 def _runs(monkeypatch: pytest.MonkeyPatch, angle: float) -> int:
     """How many runs a plan takes for a rod at rest that seems to turn by so many radians in a step."""
     monkeypatch.setattr(search, "turned", lambda _: angle)
-    scene = planar(run__backend="numpy", run__method="radau", run__frames=3, run__accuracy=1e-2)
+    scene = planar(run__backend="numpy", run__method="radau", run__frames=3, run__accuracy=1e-3)
     return len(geocosserat.run(scene).solution.plan)
 
 
