@@ -41,8 +41,8 @@ def table(verdicts: Sequence[Verdict]) -> str:
 
 
 def _reasons(verdicts: Sequence[Verdict]) -> Iterator[str]:
-    """Each outcome and reason once, the methods it is of, and the cases: but for failures, reasons that differ in numbers alone are one,
-    told with those of the first case."""
+    """Each outcome and reason once, the methods it is of, and the cases: but for failures, reasons that differ in
+    numbers alone are one, told with those of the first case."""
     for of_kind in _grouped(verdicts, lambda v: (v.outcome, v.why if v.outcome == FAILED else NUMERAL.sub("", v.why))):
         by_case = _grouped(of_kind, lambda v: v.case)
         by_methods = _grouped(by_case, lambda own: ", ".join(v.method for v in own))

@@ -7,7 +7,16 @@ from typing import Any
 
 import numpy as np
 
-from geocosserat.conductor.simulate import Attempt, Simulator, chosen_setting, drift, misplaced, turned, unbalanced
+from geocosserat.conductor.simulate import (
+    Attempt,
+    Simulator,
+    chosen_setting,
+    drift,
+    growth,
+    misplaced,
+    turned,
+    unbalanced,
+)
 from geocosserat.conductor.undetermined import undetermined
 from geocosserat.discretisation.mesh import Array, Mesh
 from geocosserat.discretisation.sampling import frictionless, left_of_friction
@@ -36,8 +45,14 @@ LEDGER = 10.0
 
 
 LONGEST_TURN = 1.0
-"""By how many radians a rod may turn in a step that is looser than the accuracy: what turns with it or stays behind may
-be passed over, and two runs whose steps pass over it agree."""
+"""By how many radians a rod may turn in a step that is loose: what turns with it or stays behind may be passed over,
+and two runs whose steps pass over it agree."""
+
+FASTEST = 5.0
+"""What may grow in a loose run where it ends, as a power of e over its time: long steps stay in an unstable state."""
+
+CLOSE, CLOSEST = 1e-6, 1e-8
+"""Tolerances that are not loose where they are below the accuracy too: for what turns, and for what grows."""
 
 BLIND = 0.1
 """A mesh that misses so large a part of something that varies along the rod has not seen it: no run on it counts."""
@@ -204,9 +219,19 @@ def _left(scene: Scene, attempt: Attempt, accuracy: float) -> Array:
     positions = rod.poses(trajectory.states[-1], trajectory.times[-1]).position
     first = np.zeros((1, space))
     astray = max(drift(rod, trajectory), misplaced(rod, trajectory))
-    passed_over = attempt.setting.rtol > accuracy and turned(attempt) > LONGEST_TURN
-    first[0, :2] = astray, LEDGER if passed_over else unbalanced(scene, attempt)
+    first[0, :2] = astray, LEDGER if _passed_over(attempt, accuracy) else unbalanced(scene, attempt)
     return np.concatenate([first, positions])
+
+
+def _passed_over(attempt: Attempt, accuracy: float) -> bool:
+    """Whether steps may have passed over something, of a method that begins with far looser tolerances than the
+    accuracy, whatever two such runs agree on."""
+    setting = attempt.setting
+    if setting.method != "radau":
+        return False
+    if setting.rtol > min(CLOSE, accuracy) and turned(attempt) > LONGEST_TURN:
+        return True
+    return setting.rtol > min(CLOSEST, accuracy) and growth(attempt) > FASTEST
 
 
 def _reason(

@@ -63,6 +63,10 @@ class Attempt:
     fell_back: FellBack | None = None
 
 
+MOST_UNKNOWNS = 400
+"""Of which the rates of all small motions are looked for."""
+
+
 def at_start(start: Array, times: Array) -> Trajectory:
     """Of a run that has not begun."""
     return Trajectory(times[:1].copy(), start[None].copy(), 0, 0, 0, False)
@@ -265,6 +269,24 @@ def turned(attempt: Attempt) -> float:
     twist = attempt.kernel.observe(end, trajectory.states[-1])[0]
     pace = float(np.linalg.norm(twist[group.translations :], axis=0).max())
     return pace * (end - float(trajectory.times[0])) / max(trajectory.steps, 1)
+
+
+def growth(attempt: Attempt) -> float:
+    """By which power of e over the time of the run that small motion grows which grows fastest where the run ends; zero
+    where none does, or where that takes too long to find out."""
+    kernel, trajectory = attempt.kernel, attempt.trajectory
+    size, end = kernel.size - kernel.quadratures, float(trajectory.times[-1])
+    if size > MOST_UNKNOWNS:
+        return 0.0
+    J = kernel.jacobian(end, trajectory.states[-1])[:size, :size]
+    held = np.flatnonzero(kernel.algebraic[:size])
+    moves = np.flatnonzero(kernel.algebraic[:size] == 0.0)
+    try:
+        follow = np.linalg.solve(J[np.ix_(held, held)], J[np.ix_(held, moves)])
+        rates = np.linalg.eigvals(J[np.ix_(moves, moves)] - J[np.ix_(moves, held)] @ follow)
+    except np.linalg.LinAlgError:
+        return 0.0
+    return float(max(rates.real.max(initial=0.0), 0.0)) * (end - float(trajectory.times[0]))
 
 
 def _check_room(frames: int, size: int) -> None:
