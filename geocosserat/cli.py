@@ -66,7 +66,14 @@ def _one_message(command: Callable[..., None]) -> Callable[..., None]:
 def program() -> None:
     """The command line, where it goes wrong as well: what it prints may go to a full disk."""
     try:
-        main()
+        code = main(standalone_mode=False)
+        sys.exit(code if isinstance(code, int) else 0)
+    except click.Abort:  # an interrupt before any command has begun
+        click.echo("geocosserat: interrupted", err=True)
+        sys.exit(NOT_REACHED)
+    except click.ClickException as error:
+        error.show()
+        sys.exit(error.exit_code)
     except OSError as error:
         _complain(f"expected files and output that can be written, found {error.strerror or error}; make room for them")
         _say_no_more()

@@ -391,6 +391,17 @@ def test_an_interrupt_as_the_program_begins_is_quiet(name: str) -> None:
     assert (done.returncode, done.stdout, done.stderr) == (3, "", "geocosserat: interrupted\n")
 
 
+def test_an_interrupt_while_words_are_read_is_quiet() -> None:
+    """Before any command has begun."""
+    code = (
+        "import signal, click\nfrom geocosserat.__main__ import main\n"
+        "click.Group.parse_args = lambda *_: signal.raise_signal(signal.SIGINT)\nmain()"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (3, "")
+    assert done.stderr.strip() == "geocosserat: interrupted"
+
+
 def test_resuming_nothing_is_refused_in_one_line(cantilever: str, tmp_path: Path) -> None:
     """No folder named, or none there."""
     assert "--resume: expected the folder of the interrupted run" in refused(call("run", cantilever, "--resume"))
