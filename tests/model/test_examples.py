@@ -16,8 +16,8 @@ NAMES = {file.stem for file in EXAMPLES}
 EFFECTS = ("weight", "follower", "couple", "field", "flow", "trap")
 PROMISED = {
     "cantilever", "chiral", "cilium", "circle", "couple", "driven", "elastica", "euler_bernoulli", "follower",
-    "hanging", "helix", "inextensible", "kirchhoff", "magnetic", "pinned", "pure_twist", "ring", "sinking", "spun",
-    "stepped", "swimmer", "trapped", "tumbling",
+    "hanging", "helix", "inextensible", "kirchhoff", "magnetic", "pinned", "pure_stretch", "pure_twist", "ring",
+    "sinking", "spun", "stepped", "swimmer", "towed", "trapped", "tumbling", "unshearable",
 }  # fmt: skip
 
 
@@ -82,6 +82,27 @@ def test_every_effect_and_every_kind_of_end_has_an_example() -> None:
     assert any(model.joined for model in models)
     assert any(model.friction[-1][-1] == Number(0.0) for model in models)
     assert any("t" in symbols(e) for model in models for e in model.reference)
-    held = {tuple(model.held) for model in models}
-    assert {(True, False, False), (True, True, False), (True, True, True, False, False, False)} <= held
-    assert (True, True, True, False, True, True) in held
+
+
+def test_every_limit_has_an_example() -> None:
+    """Euler and Bernoulli's, Kirchhoff's, Timoshenko's without stretch, without shear, pure twist, pure stretch."""
+    frozen = {tuple(load_scene(file).model.frozen) for file in EXAMPLES}
+    assert {("h1", "h2"), ("h1", "h2", "h3"), ("h1",), ("h2",), ("h2", "Pi")} <= frozen
+    assert ("h1", "h2", "h3", "Pi2", "Pi3") in frozen
+
+
+def test_ends_are_driven_in_every_way_and_loaded_on_either_side() -> None:
+    """Spun about the axis, rocked, moved along; forces and torques that turn with an end and that do not."""
+    models = [load_scene(file).model for file in EXAMPLES]
+    ways = set()
+    for end in (end for model in models for end in (model.left, model.right) if end.kind == "driven"):
+        assert end.twist is not None
+        ways.add(tuple(e != Number(0.0) for e in end.twist))
+    assert {(False, False, True), (False, False, True, False, False, False), (*[False] * 3, True, False, False)} <= ways
+    sides = {
+        (side, end.frame)
+        for model in models
+        for side, end in (("left", model.left), ("right", model.right))
+        if end.force is not None or end.torque is not None
+    }
+    assert sides == {(side, frame) for side in ("left", "right") for frame in ("body", "world")}

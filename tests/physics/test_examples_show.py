@@ -89,3 +89,32 @@ def test_the_spun_rod_is_wound_up_by_turns_and_stays_straight() -> None:
     twist = solution.turn[-1, :, 3]
     assert abs(twist.mean()) > 2 * 2 * np.pi
     np.testing.assert_allclose(solution.position[..., 1:], 0.0, atol=1e-12)
+
+
+def test_the_towed_rod_does_not_turn_at_its_base_and_trails_behind() -> None:
+    """The base goes along z; in the end all of the rod is behind it, and the tip has sagged."""
+    solution = _solution("towed")
+    assert np.abs(solution.rotation[:, 0] - np.eye(3)).max() < 1e-12
+    behind = solution.position[-1, :, 2] - solution.position[-1, 0, 2]
+    assert np.all(behind[1:] < 0.0)
+    assert behind[-1] < -0.5
+    assert solution.position[-1, -1, 1] < -0.02
+
+
+def test_the_arc_that_cannot_shear_is_drawn_straight_and_longer() -> None:
+    """Its ends go apart, from less than its length to more; nowhere is it sheared."""
+    solution = _solution("unshearable")
+    ends = solution.position[:, -1] - solution.position[:, 0]
+    span = np.linalg.norm(ends, axis=1)
+    assert span[0] < 0.9
+    assert span[-1] > 1.0
+    np.testing.assert_array_equal(solution.turn[:, :, 1], 0.0)
+
+
+def test_the_band_stays_straight_while_its_end_goes_to_and_fro() -> None:
+    """By a tenth of the length to either side; its other end stays."""
+    solution = _solution("pure_stretch")
+    assert np.abs(solution.position[..., 1]).max() < 1e-12
+    assert solution.position[:, 0, 0].max() > 0.1
+    assert solution.position[:, 0, 0].min() < -0.1
+    assert np.abs(solution.position[:, -1] - [1.0, 0.0]).max() < 1e-12

@@ -57,6 +57,19 @@ def test_the_same_without_friction_of_the_rotation(ends: tuple[Any, Any]) -> Non
     assert farthest(expected, _decays(_bending(ends, 0, rod__frozen=["h1", "h2"]), 14)) < 1e-3
 
 
+@pytest.mark.parametrize("ends", [("clamped", "free"), ("free", "free"), ("clamped", "clamped")], ids="-".join)
+def test_frozen_shear_alone_leaves_the_rates_of_euler_and_bernoulli_beside_those_of_the_heat_equation(
+    ends: tuple[Any, Any],
+) -> None:
+    """A straight rod bends as if it could not stretch, and stretches as if it could not bend; four modes of each."""
+    found = _decays(changed(_bending(ends, FRICTION3), {"rod.stiffness": [90.0, 1.0, K3], "rod.frozen": ["h2"]}), 22)
+    bending = euler_bernoulli.decay_rates(LENGTH, K3, FRICTION2, FRICTION3, _named(ends), 4)
+    assert farthest(bending, found) < 1e-8
+    if "free" in ends:
+        stretching = axial_twist.decay_rates(90.0, 1.0, LENGTH, 4, "-".join(ends))  # type: ignore[arg-type]
+        assert farthest(stretching, found) < 1e-8
+
+
 def _named(ends: tuple[Any, Any]) -> Any:
     return "-".join(sorted(ends, key=["clamped", "pinned", "free"].index))
 
