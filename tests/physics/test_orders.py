@@ -101,7 +101,23 @@ SCENES = {
         {"kind": "driven", "twist": SCREW},
         {"kind": "free", "force": [0.2, "t", -0.3], "torque": [0.0, 0.1, 0.2], "frame": "world"}, ["h1", "h2", "h3"],
     ),
+    "space, free and loaded at both ends": _space(
+        {"kind": "free", "force": ["t", 0.3, -0.2], "torque": [0.1, 0.0, "t"], "frame": "world"},
+        {"kind": "free", "force": [0.2, "t", -0.3], "torque": [0.0, 0.1, 0.2], "frame": "body"}, [],
+    ),
+    "space, pinned at both ends": _space(
+        {"kind": "pinned", "torque": [0.1, "0.2*t", 0.0]},
+        {"kind": "pinned", "torque": ["t", 0.0, 0.2], "frame": "world"}, [],
+    ),
+    "plane, driven at both ends": _plane(
+        {"kind": "driven", "twist": TWIST}, {"kind": "driven", "twist": ["0.3*sin(8*t)", "0.4", "cos(5*t)"]}, [],
+    ),
     "ring": _ring(),
+    "ring in space": changed(
+        _space({}, {}, []),
+        {"rod.reference": ["1", "0", "0", "0", "0", "2*pi"], "ends": {"joined": True},
+         "start": {"rotation": [0.2, -0.3, 0.4], "strain": ["1", "0", "0", "0", "0", "2*pi*(1 + 0.4*cos(4*pi*u))"]}},
+    ),
     "plane, viscous, free and loaded": _viscous(
         _plane({"kind": "free"}, {"kind": "free", "force": [0.2, "t"], "frame": "world"}, []),
         {
