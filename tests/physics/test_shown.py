@@ -215,10 +215,10 @@ def test_the_ledger_of_every_example_closes(path: Path) -> None:
     "path", sorted((Path(__file__).parents[2] / "examples" / "stability").glob("*.toml")), ids=lambda p: p.stem
 )
 def test_a_rod_whose_stability_is_asked_for_runs_too_and_its_ledger_closes(path: Path) -> None:
-    """Most are at rest, stable or not: all that stored + dissipated = work is off by is round-off, of energies that are
-    hundredths of a bending stiffness over a length at least."""
+    """Most are at rest, stable or not: all that stored + dissipated = work is off by is round-off, beside the energy of
+    a bend, 1 in the units of these scenes, or the energy that the rod holds."""
     run = geocosserat.run(path, settings=["run.frames=2"])
     assert run.reached
     terms = [run.ledger[name] for name in ("stored", "dissipated", "work")]
     left = abs(terms[0] + terms[1] - terms[2])
-    assert left < max(10 * run.error["requested"] * max(map(abs, terms)), 1e-9)
+    assert left < max(10 * run.error["requested"] * max(map(abs, terms)), 1e-9 * max(1.0, run.energy["start"]))
