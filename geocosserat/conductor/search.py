@@ -17,7 +17,7 @@ from geocosserat.conductor.simulate import (
     turned,
     unbalanced,
 )
-from geocosserat.conductor.undetermined import undetermined
+from geocosserat.conductor.undetermined import undetermined, yielded
 from geocosserat.discretisation.mesh import Array, Mesh
 from geocosserat.discretisation.sampling import frictionless, left_of_friction
 from geocosserat.discretisation.semidiscrete import discretise
@@ -53,6 +53,10 @@ FASTEST = 5.0
 
 CLOSE, CLOSEST = 1e-6, 1e-8
 """Tolerances that are not loose where they are below the accuracy too: for what turns, and for what grows."""
+
+YIELD = 0.1
+"""Of the accuracy, or of the default one if that is less: what goes aside by more, by what frozen modes yield, carries
+a stress that the yielding determines, if nothing else does."""
 
 BLIND = 0.1
 """A mesh that misses so large a part of something that varies along the rod has not seen it: no run on it counts."""
@@ -140,6 +144,8 @@ class _Search:
         setting, part = kept.setting, max(BLIND, self.accuracy**0.5)
         blind = not self.resolution.sees_all(setting.elements, setting.degree, self.accuracy, part)
         reached = verdict.reached and not blind and estimate is not None and estimate <= self.accuracy
+        if reached and yielded(kept) > YIELD * min(self.accuracy, DEFAULT_ACCURACY):
+            reached = not undetermined(kept)
         last = next(reversed(whole.values()), kept)
         return Found(kept, estimate, reached, _reason(kept, last, estimate, reached, modelled, blind), tuple(self.runs))
 

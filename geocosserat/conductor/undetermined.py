@@ -2,7 +2,7 @@
 
 A straight rod between two clamps that may not stretch carries any tension. The kernel takes the least one, by letting
 frozen modes yield a little (sampling.SLACK). That is right where the rod stays as it is, but one that is pushed aside
-does not move but by what it yields. It is looked for only where a run was refused.
+does not move but by what it yields. It is looked for where a run was refused, or yielded by more than next to nothing.
 """
 
 import numpy as np
@@ -18,6 +18,30 @@ LITTLE = 1e6
 
 PART, ROUNDS = 0.1, 3
 """Of the largest stress, what is worth naming; of the inverse iteration."""
+
+
+def yielded(attempt: Attempt) -> float:
+    """How far aside a rod can go, relative to its length, by what its frozen modes have yielded to their stress: as an
+    arc that is longer than its chord by that. Zero where none may yield."""
+    rod, trajectory = attempt.rod, attempt.trajectory
+    if not rod.structure.indeterminate:
+        return 0.0
+    points, length = len(rod.mesh.weight), float(rod.mesh.edges[-1])
+    rows = slice(0, rod.structure.group.dimension * points)
+    stresses = np.abs(trajectory.states[:, rows]).reshape(-1, rod.structure.group.dimension, points).max(axis=2)
+    span = float(trajectory.times[-1] - trajectory.times[0])
+    units = [1.0 if i < rod.structure.group.translations else length for i in range(rod.structure.group.dimension)]
+    return float(np.sqrt((stresses * _slack(rod) * units).sum(axis=1).max() * span))
+
+
+def _slack(rod: SemiDiscrete) -> Array:
+    """By which each mode yields, zero for those that are not frozen."""
+    structure = rod.structure
+    names = [c.name for c in structure.at("uniform")]
+    return np.array([
+        rod.uniform[names.index(f"slack_{s}")] if held else 0.0
+        for s, held in zip(structure.group.stress, structure.frozen, strict=True)
+    ])  # fmt: skip
 
 
 def undetermined(attempt: Attempt) -> str:
@@ -42,11 +66,7 @@ def _free(rod: SemiDiscrete, kernel: NativeRod | NumpyRod, t: float, state: Arra
     """Frozen modes with stresses that hardly move anything, but by what these modes yield."""
     structure, weight = rod.structure, rod.mesh.weight
     group, fixes, points = structure.group, rod.algebraic, len(weight)
-    names = [c.name for c in structure.at("uniform")]
-    slack = np.array([
-        rod.uniform[names.index(f"slack_{s}")] if held else 0.0
-        for s, held in zip(group.stress, structure.frozen, strict=True)
-    ])  # fmt: skip
+    slack = _slack(rod)
     rows = slice(0, group.dimension * points)
     frozen = np.repeat(structure.frozen, points)
 
