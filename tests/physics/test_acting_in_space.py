@@ -3,7 +3,7 @@ computed from positions and quaternions at Chebyshev points, where what acts is 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -192,8 +192,8 @@ def _acting(names: tuple[str, ...], motion: str) -> acted_rod.Acting:
     return acting
 
 
-def _solved(rod: acted_rod.Rod) -> Shape:
-    return acted_rod.solve(rod, UNTIL, DEGREE, longest=1 / 30)
+def _solved(rod: acted_rod.Rod, degree: int = DEGREE) -> Shape:
+    return acted_rod.solve(rod, UNTIL, degree, longest=1 / 30)
 
 
 @pytest.mark.usefixtures("own")
@@ -247,12 +247,32 @@ def test_loads_on_any_ends_move_the_rod_as_they_must(
 
 # driven ends: phi(0, t) = phi(0, 0) exp(s(t) X), by screw X and s(t); the rider of the base sees a medium that flows
 
-SCREWS: dict[str, tuple[str, list[float], str, str]] = {
-    "spinning": ("spatial", [0.0, 0.0, 0.0, 1.0, 0.0, 0.0], "400*t**3", "1200*t**2"),
-    "oscillating": ("spatial", [0.0, 0.0, 0.0, 0.0, 0.6, 0.8], "0.5*sin(15*t)**3", "22.5*sin(15*t)**2*cos(15*t)"),
-    "translating": ("spatial", [0.4, 0.3, -0.5, 0.0, 0.0, 0.0], "150*t**3", "450*t**2"),
-    "screwing": ("spatial", [0.5, -0.2, 0.3, 1.0, -0.5, 0.7], "200*t**3", "600*t**2"),
-    "rocking in the plane": ("planar", [0.5, -0.3, 0.0, 0.0, 0.0, 1.0], "200*t**3", "600*t**2"),
+@dataclass(frozen=True)
+class Screw:
+    """travelled: the parameter of phi = exp(travelled screw) phi(0) at a time; its rate, as numbers and as a scene has
+    it; degree: of the reference, which a rod that is dragged far needs more of."""
+
+    motion: str
+    screw: list[float]
+    travelled: Callable[[float], float]
+    rate: Callable[[float], float]
+    text: str
+    degree: int = DEGREE
+
+
+def _cubic(motion: str, screw: list[float], factor: float, degree: int = DEGREE) -> Screw:
+    return Screw(motion, screw, lambda t: factor * t**3, lambda t: 3 * factor * t**2, f"{3 * factor!r}*t**2", degree)
+
+
+SCREWS = {
+    "spinning": _cubic("spatial", [0.0, 0.0, 0.0, 1.0, 0.0, 0.0], 400.0),
+    "oscillating": Screw(
+        "spatial", [0.0, 0.0, 0.0, 0.0, 0.6, 0.8], lambda t: 0.5 * np.sin(15 * t) ** 3,
+        lambda t: 22.5 * np.sin(15 * t) ** 2 * np.cos(15 * t), "22.5*sin(15*t)**2*cos(15*t)",
+    ),
+    "translating": _cubic("spatial", [0.4, 0.3, -0.5, 0.0, 0.0, 0.0], 300.0, 22),
+    "screwing": _cubic("spatial", [0.5, -0.2, 0.3, 1.0, -0.5, 0.7], 200.0),
+    "rocking in the plane": _cubic("planar", [0.5, -0.3, 0.0, 0.0, 0.0, 1.0], 200.0),
 }  # fmt: skip
 
 
@@ -268,30 +288,28 @@ def _matrix(screw: Array) -> Array:
 @pytest.mark.parametrize("name", SCREWS)
 def test_a_driven_end_moves_the_rod_as_it_must(name: str, side: str) -> None:
     """Spun, rocked, moved along and all at once, under weight, at either end: clamped, for who rides on it."""
-    motion, given, travelled, speed = SCREWS[name]
-    screw, flat = np.array(given), motion == "planar"
+    driven = SCREWS[name]
+    motion, screw = driven.motion, np.array(driven.screw)
+    flat = motion == "planar"
     weight = np.array([1.0, -5.0, 0.0 if flat else 2.0])
     start = np.eye(4)
     start[1:, 0], start[1:, 1:] = POSITION[motion], Rotation.from_rotvec(ROTATION[motion]).as_matrix()
     spatial = start @ _matrix(screw) @ np.linalg.inv(start)
     velocity, spin = spatial[1:, 0], np.array([spatial[3, 2], spatial[1, 3], spatial[2, 1]])
 
-    def at(t: float, text: str) -> float:
-        return float(eval(text, {"t": t, "sin": np.sin, "cos": np.cos}))
-
     def acting(t: float, r: Values, q: Values) -> tuple[Values, Values]:
-        rate, turned = at(t, speed), expm(at(t, travelled) * spatial)[1:, 1:]
+        rate, turned = driven.rate(t), expm(driven.travelled(t) * spatial)[1:, 1:]
         force, couple = medium(np.diag(FRICTION), q, -rate * (velocity + np.cross(spin, r)), -rate * spin)
         return force + turned.T @ weight * gently(t), couple
 
-    seen = _solved(replace(_rod(motion), acting=acting))
-    carried = expm(at(UNTIL, travelled) * spatial)
+    seen = _solved(replace(_rod(motion), acting=acting), driven.degree)
+    carried = expm(driven.travelled(UNTIL) * spatial)
     expected = Shape(
         seen.u, carried[1:, 0] + seen.position @ carried[1:, 1:].T, carried[1:, 1:] @ seen.rotation, seen.turn
     )
     kept = KEPT if flat else list(range(6))
     effect = {"kind": "weight", "force": [f"{w!r}*{GENTLY}" for w in weight.tolist()[: 2 if flat else 3]]}
-    twist = [f"{screw.tolist()[i]!r}*{speed}" for i in kept]
+    twist = [f"{screw.tolist()[i]!r}*{driven.text}" for i in kept]
     scene = _scene(motion, effects=[effect], **{"ends.left": {"kind": "driven", "twist": twist}})
     _agree(scene if side == "left" else _counted_from_the_other_end(scene, motion), expected, side == "right")
 
