@@ -131,7 +131,6 @@ static inline void subtract(int n, double f, const double *restrict x, double *r
         y[j] -= f * x[j];
 }
 
-
 /* Matrices of constraints are stored by columns, and padded by ones on the diagonal to a multiple of BLOCK: no loop has a
  * remainder.
  *
