@@ -44,7 +44,7 @@ def of(kernel: Kernel, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 @pytest.mark.parametrize("end", ["left", "right"])
-@pytest.mark.parametrize(("elements", "degree"), [(1, 1), (2, 3), (1, 8), (3, 12), (1, 24)])
+@pytest.mark.parametrize(("elements", "degree"), [(1, 1), (3, 4), (1, 12)])
 @pytest.mark.parametrize("turn", [0.5, 3.0, 10.0, 30.0, 100.0])
 def test_elements_may_turn_far(turn: float, elements: int, degree: int, end: str) -> None:
     """To round-off up to ten radians an element, and so much less beyond as they turn more."""
