@@ -287,6 +287,17 @@ def turning() -> Iterator[Case]:
         ),
     )
     yield Case(
+        "base of a bent Kirchhoff rod spun by a hundred turns",
+        "rotations",
+        spatial(
+            rod__frozen=["h1", "h2", "h3"],
+            ends__left={"kind": "driven", "twist": [0, 0, 0, "200*pi", 0, 0]},
+            run__until=1.0,
+            start__strain=None,
+            rod__reference=[1, 0, 0, 0, 0.5, 0],
+        ),
+    )
+    yield Case(
         "base turned by a hundred turns, planar",
         "rotations",
         planar(ends__left={"kind": "driven", "twist": [0, 0, "20*pi"]}, run__until=10.0),
@@ -388,6 +399,32 @@ def unstable() -> Iterator[Case]:
             rod__reference=[1, 0, 0, 0, 0, "6*pi"],
             start__strain=["1", "0", "0", "1e-6*cos(4*pi*s)", "1e-6*sin(4*pi*s)", "2*pi"],
             ends={"joined": True},
+            run__until=0.05,
+        ),
+    )
+    for what, until in (
+        ("leaves its plane", 0.05),
+        ("halfway out of its plane", 0.004),
+        ("about to leave its plane", 0.003),
+    ):
+        yield Case(
+            f"overcurved inextensible ring {what}",
+            "instabilities",
+            spatial(
+                rod__frozen=["h1", "h2", "h3"],
+                rod__reference=[1, 0, 0, 0, 0, "6*pi"],
+                start__strain=["1", "0", "0", "1e-6*cos(4*pi*s)", "1e-6*sin(4*pi*s)", "2*pi"],
+                ends={"joined": True},
+                run__until=until,
+            ),
+        )
+    yield Case(
+        "inextensible column that still buckles at the end",
+        "instabilities",
+        planar(
+            rod__frozen=["h1", "h2"],
+            ends__right={"kind": "free", "frame": "world", "force": [-40.0, 1e-3]},
+            start__strain=None,
             run__until=0.05,
         ),
     )
