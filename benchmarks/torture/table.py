@@ -17,6 +17,9 @@ LEGEND = (
     "start; error: over the one asked for. Each is the worst of the cases that were survived.",
 )
 NUMERAL = re.compile(r"-?\b\d[\d.]*(e[+-]?\d+)?")
+EXPECTED = re.compile(r"\bexpected (?!.*\bexpected )")
+"""Where the last reason begins that says what was expected and what was found."""
+
 T = TypeVar("T")
 Number = Callable[[Verdict], float | None]
 NUMBERS: tuple[Number, ...] = (lambda v: v.ledger, lambda v: v.rise, lambda v: v.error)
@@ -43,12 +46,22 @@ def table(verdicts: Sequence[Verdict]) -> str:
 def _reasons(verdicts: Sequence[Verdict]) -> Iterator[str]:
     """Each outcome and reason once, the methods it is of, and the cases: but for failures, reasons that differ in
     numbers alone are one, told with those of the first case."""
-    for of_kind in _grouped(verdicts, lambda v: (v.outcome, v.why if v.outcome == FAILED else NUMERAL.sub("", v.why))):
+    for of_kind in _grouped(verdicts, lambda v: (v.outcome, v.why if v.outcome == FAILED else _words(v))):
         by_case = _grouped(of_kind, lambda v: v.case)
         by_methods = _grouped(by_case, lambda own: ", ".join(v.method for v in own))
-        yield f"* {of_kind[0].outcome}: {of_kind[0].why or 'no reason'}"
+        yield f"* {of_kind[0].outcome}: {_reason(of_kind[0]) or 'no reason'}"
         for own in by_methods:
             yield f"  * {', '.join(v.method for v in own[0])} ({len(own)}): {'; '.join(of[0].case for of in own)}"
+
+
+def _reason(verdict: Verdict) -> str:
+    """All of a failure's; of others, the cause alone if one is told, not what each solver said before it."""
+    cause = None if verdict.outcome == FAILED else EXPECTED.search(verdict.why)
+    return verdict.why[cause.start() :] if cause else verdict.why
+
+
+def _words(verdict: Verdict) -> str:
+    return NUMERAL.sub("", _reason(verdict))
 
 
 def _grouped(things: Sequence[T], key: Callable[[T], object]) -> list[list[T]]:
