@@ -143,9 +143,7 @@ class Session(ABC):
         )
 
     def _meaning(self, code: int) -> str:
-        text = self.library.call("GetReturnFlagName")(code)
-        words = bytes(self.ffi.string(text)).decode()
-        self.lib.free(text)
+        words = self.library.meaning(code)
         return MEANINGS.get(words.partition("_")[2], words)
 
 

@@ -99,6 +99,13 @@ class Sundials:
         """The integrator's function of that name, without its prefix."""
         return getattr(self.lib, f"{self.prefix}{name}")
 
+    def meaning(self, code: int) -> str:
+        """Its name of what a call came to, as in CV_CONV_FAILURE."""
+        text = self.call("GetReturnFlagName")(code)
+        name = bytes(self.ffi.string(text)).decode()
+        self.ffi.dlopen(None).free(text)  # that of the program: preloaded allocators come before the library's own
+        return name
+
     def solver(self, solve: Any, content: Any, context: Any) -> Any:
         """A direct linear solver whose system is factored elsewhere; `solve` finds `content` where it points to."""
         made = self.lib.SUNLinSolNewEmpty(context)

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import resource
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -143,3 +146,19 @@ def test_integrations_leave_no_memory_behind(library: Path) -> None:
     for _ in range(1000):
         integrate(problem, start, TIMES)
     assert used() - before < 4000  # kilobytes
+
+
+def test_names_of_codes_are_given_back_to_whoever_gave_them(c_compiler: str) -> None:
+    """Also where the program has another allocator than the C library's, as under a sanitiser: free knows its own."""
+    asked = [c_compiler, "-print-file-name=libasan.so"]
+    other = subprocess.run(asked, capture_output=True, text=True, check=False).stdout.strip()
+    if not Path(other).is_absolute():
+        pytest.skip("the compiler has no sanitiser whose allocator could be taken")
+    program = (
+        "from geocosserat.solver.sundials import sundials; "
+        "print(*(sundials(name).meaning(-4) for name in ('CVode', 'IDA') for _ in range(100)))"
+    )
+    preloaded = {**os.environ, "LD_PRELOAD": other, "ASAN_OPTIONS": "detect_leaks=0"}
+    done = subprocess.run([sys.executable, "-c", program], env=preloaded, capture_output=True, text=True, check=False)
+    assert (done.stderr, done.returncode) == ("", 0)
+    assert done.stdout.split() == ["CV_CONV_FAILURE"] * 100 + ["IDA_CONV_FAIL"] * 100
