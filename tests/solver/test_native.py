@@ -135,6 +135,8 @@ def test_progress_is_told_and_frames_are_handed_on(library: Path) -> None:
 
 def test_integrations_leave_no_memory_behind(library: Path) -> None:
     """The process is no larger after a thousand more of them."""
+    if "libasan" in os.environ.get("LD_PRELOAD", ""):
+        pytest.skip("the sanitiser keeps for a while what was given back, to see that it is not used")
 
     def used() -> int:
         return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
