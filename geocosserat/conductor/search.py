@@ -230,12 +230,12 @@ def _left(scene: Scene, attempt: Attempt, accuracy: float) -> Array:
 
 
 def _passed_over(attempt: Attempt, accuracy: float) -> bool:
-    """Whether steps may have passed over something, of a method that begins with far looser tolerances than the
-    accuracy, whatever two such runs agree on."""
+    """Whether steps may have passed over something, of a method that makes long ones, since it begins with looser
+    tolerances than the accuracy, whatever two such runs agree on."""
     setting = attempt.setting
-    if setting.method != "radau":
+    if setting.method not in ("radau", *LAST_RESORTS):
         return False
-    if setting.rtol > min(CLOSE, accuracy) and turned(attempt) > LONGEST_TURN:
+    if setting.method == "radau" and setting.rtol > min(CLOSE, accuracy) and turned(attempt) > LONGEST_TURN:
         return True
     return setting.rtol > min(CLOSEST, accuracy) and growth(attempt) > FASTEST
 

@@ -19,6 +19,9 @@ SHARE = 0.4
 ROUGH = 0.1
 """Of the length: a mesh that errs by more than that has missed the motion."""
 
+LOST = 1.0
+"""An error in time, known of a run by itself, that no ledger lacks: its steps passed over the motion."""
+
 FIRST_DECADES, MOST_DECADES, MOST_GROWTH, MOST_RUNS = 1.5, 4.0, 4.0, 12
 
 
@@ -134,6 +137,8 @@ def plan(accuracy: float, choice: Choice, errors: Errors, first: int = 0) -> Gen
                         in_space = _finer_in_space(coarse, growth, in_time.cautious)
             if coarse > ROUGH and new.decades < choice.finest(size):
                 in_time = Guess()  # steps on a mesh that misses the motion tell nothing of those on one that does not
+            elif decades > 0.0 and errors.in_time(before) >= LOST:  # nor do steps that pass over it of shorter ones
+                in_time = in_time.at_least(gap)
             in_space, in_time = in_space.at_least(errors.in_space(kept)), in_time.at_least(errors.in_time(kept))
             estimate = in_space.cautious + in_time.cautious
             if estimate <= accuracy:

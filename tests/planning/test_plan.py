@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import pytest
 
-from geocosserat.planning.plan import Choice, Errors, Level, Request, Verdict, plan
+from geocosserat.planning.plan import LOST, Choice, Errors, Level, Request, Verdict, plan
 
 POINTS = (8, 12, 16, 24, 32, 48, 64, 96, 128)
 NOISE = 2.0
@@ -34,6 +34,8 @@ class Problem:
     unbalanced: float = 0.0
     blind: int = 0
     """Sizes below this one miss the motion: they are far off, and whatever the steps."""
+    lost: float = 0.0
+    """Decades up to which steps pass over the motion: they are off by `time`, and finer ones by less from there."""
     landed: float | None = None
     """What frames leave of most of the error in time of a run that keeps many, where that is less."""
     told: bool = True
@@ -52,10 +54,16 @@ class Problem:
         in_space = np.random.default_rng(which)
         in_time = np.random.default_rng([*which, round(1000 * level.decades), level.size >= self.switch])
         space, time = self.space * self.ratio ** POINTS[level.size], self.time * 10.0 ** (-self.order * level.decades)
+        if self.lost:
+            time = self.time * 10.0 ** (-self.order * max(0.0, level.decades - self.lost))
+            return self._off(in_space, space) + time * np.array([1.0, 0.0, 0.0, 0.0])
         if self.landed is not None:
             late = min(0.8 * time, self.landed) if whole else 0.8 * time
             return self._off(in_space, space) + self._off(in_time, 0.2 * time) + late * np.array([1.0, 0.0, 0.0, 0.0])
         return self._off(in_space, space) + self._off(in_time, time)
+
+    def _in_time(self, decades: float) -> float:
+        return LOST if decades < self.lost else self.unbalanced * 10.0**-decades
 
     def _off(self, chance: np.random.Generator, size: float) -> np.ndarray:
         direction = chance.normal(size=4)
@@ -69,7 +77,7 @@ class Problem:
         errors = Errors(
             lambda i, j: float(np.linalg.norm(self.vectors[i] - self.vectors[j])),
             lambda _: self.strayed,
-            lambda i: self.unbalanced * 10.0 ** -self.runs[i].level.decades,
+            lambda i: self._in_time(self.runs[i].level.decades),
         )
         steps = plan(accuracy, choice, errors, first)
         request = next(steps)
@@ -223,6 +231,16 @@ def test_steps_on_a_mesh_that_misses_the_motion_tell_nothing() -> None:
     """A rod that only a fine mesh lets become unstable: its error in time is found there, not where there is none."""
     for seed in range(20):
         problem = Problem(seed, space=1e-3, ratio=0.1, time=1.0, blind=2)
+        verdict = problem.solve(1e-4)
+        assert verdict.reached
+        assert problem.truth(verdict) < 1e-4
+
+
+def test_steps_that_pass_over_the_motion_tell_nothing_of_shorter_ones() -> None:
+    """The gap from a run that stayed where it was is no more than what the next one may lack, however many decades
+    finer that is."""
+    for seed in range(20):
+        problem = Problem(seed, space=1e-8, time=1e-2, order=0.7, lost=4.5)
         verdict = problem.solve(1e-4)
         assert verdict.reached
         assert problem.truth(verdict) < 1e-4
