@@ -33,10 +33,26 @@ WRONG = {
 """Code with a fault that the sanitisers should report, and what to call it with."""
 
 
+LIGHT = """#!/bin/sh
+unset LD_PRELOAD
+case "$*" in *-fsanitize=*) ;; *) exec {tool} "$@" ;; esac
+for word do
+    shift
+    case $word in
+    /*/rod.c) cd "${{word%/*}}" && set -- "$@" rod.c "-ffile-prefix-map=${{word%/*}}=." ;;
+    *) set -- "$@" "$word" ;;
+    esac
+done
+exec {tool} "$@" {level}
+"""
+"""A compiler that does not run under the sanitisers itself, as Python must, optimises little what is to run under them,
+and makes the same library of the same kernel in any folder, as it does without them."""
+
+
 def light(tool: str, folder: Path) -> str:
-    """A compiler that optimises little, and does not run under the sanitisers itself as Python must."""
+    """Path of that compiler, written to a folder."""
     path = folder / Path(tool).name
-    path.write_text(f'#!/bin/sh\nunset LD_PRELOAD\nexec {shlex.quote(tool)} "$@" {LEVEL}\n')
+    path.write_text(LIGHT.format(tool=shlex.quote(tool), level=LEVEL))
     path.chmod(0o700)
     return str(path)
 
