@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -20,7 +22,14 @@ def gap(group: Group, strain: Vector, names: Names) -> tuple[float, float]:
     """How far apart the ends of the start are: distance relative to the length, and angle in radians (0 to pi).
 
     Full turns do not count. The frame is marched by a method of fourth order, with ever more steps until two agree.
+    Neither is finite where the strains are too large for that.
     """
+    with np.errstate(all="ignore"):
+        distance, angle = _gap(group, strain, names)
+    return (distance, angle) if math.isfinite(distance + angle) else (math.inf, math.inf)
+
+
+def _gap(group: Group, strain: Vector, names: Names) -> tuple[float, float]:
     n, before = _FEWEST, _whole(group, strain, names, _FEWEST)
     while n < _MOST:
         n, now = 2 * n, _whole(group, strain, names, 2 * n)

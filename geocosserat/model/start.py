@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from geocosserat.model.checks import Array, check_all_finite, points_along
@@ -67,8 +69,9 @@ def _check_closed(place: Place, strain: Vector, model: RodModel, names: Names) -
     """Raise InputError unless the ends meet and are turned alike."""
     distance, angle = gap(model.group, strain, names)
     if not max(distance, angle) <= OPEN:
+        apart = f"ends {distance:.3g} of the length apart and turned by {angle:.3g} rad"
         raise place.wrong(
             "a closed ring, since the ends are joined",
-            Found(f"ends {distance:.3g} of the length apart and turned by {angle:.3g} rad"),
+            Found(apart if math.isfinite(distance) else "strains too large for that"),
             f"change these strains; in a circle {model.group.strain[-1]} is 2*pi over the length",
         )

@@ -147,6 +147,13 @@ def test_open_shapes_of_the_plane_are_no_rings(strain: list[Any]) -> None:
         ring(strain)
 
 
+@pytest.mark.parametrize("strain", [[1, 0, 0, 0, 0, 1e99], [1, 0, 0, 1e160, 0, 0], [1e200, 0, 0, 0, 0, "pi"]])
+def test_strains_too_large_to_be_followed_are_no_ring(strain: list[Any]) -> None:
+    """Frames that overflow on their way around are refused, and no warning is printed."""
+    with pytest.raises(InputError, match=r"start.strain: expected a closed ring, .*, found strains too large for that"):
+        ring(strain, SPATIAL)
+
+
 @pytest.mark.parametrize(
     ("strain", "closed"),
     [
