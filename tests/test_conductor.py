@@ -275,3 +275,15 @@ def test_generated_files_are_not_overwritten_unless_asked_for(cantilever: Path, 
     with pytest.raises(InputError, match='--backend: expected "c" or "numpy", found \'rust\''):
         geocosserat.generate(cantilever, "rust", tmp_path / "other")
     assert not (tmp_path / "other").exists()
+
+
+@pytest.mark.parametrize("place", [0, 2])
+@pytest.mark.parametrize("size", [1e155, 1e300])
+def test_strains_beyond_all_measure_are_refused(place: int, size: float) -> None:
+    """An energy that is no number is found before anything is computed; no infinity is kept, no warning printed."""
+    strain: list[float] = [1.0, 0.0, 0.0]
+    strain[place] = size
+    rod = {"motion": "planar", "length": 1.0, "stiffness": [20, 20, 20], "friction": [1, 1, 1]}
+    scene = {"rod": rod, "start": {"strain": strain}, "run": {"until": 1.0, "frames": 3, "backend": "numpy"}}
+    with pytest.raises(InputError, match=r"start.strain: expected a finite energy at the start, found inf; start from"):
+        geocosserat.run(scene)

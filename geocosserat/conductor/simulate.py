@@ -203,7 +203,10 @@ def tolerances(rod: SemiDiscrete, rtol: float, atol: float | None, energy: float
 
 
 def unit_of_energy(scene: Scene, rod: SemiDiscrete, kernel: NativeRod | NumpyRod) -> float:
-    """Energy stored at the start, or that of bending the softest way by a radian if that is more."""
+    """Energy stored at the start, or that of bending the softest way by a radian if that is more.
+
+    Raises InputError where what is stored is more than any number.
+    """
     model, group = scene.model, scene.model.group
     stiff = stiffnesses(model)
     free = [i for i in range(group.dimension) if not rod.structure.frozen[i]]
@@ -212,7 +215,12 @@ def unit_of_energy(scene: Scene, rod: SemiDiscrete, kernel: NativeRod | NumpyRod
         stiff[i] * model.length ** (1 if i < group.translations else -1)
         for i in ([i for i in free if i >= group.translations] or free)
     ]
-    return max(kernel.observe(0.0, rod.state)[2], min(units))
+    with np.errstate(all="ignore"):
+        stored = kernel.observe(0.0, rod.state)[2]
+    if not math.isfinite(stored):
+        hint = "start from smaller strains"
+        raise InputError("a finite energy at the start", f"{stored:g}", hint, key="start.strain")
+    return max(stored, min(units))
 
 
 def chosen_setting(scene: Scene) -> Setting | None:

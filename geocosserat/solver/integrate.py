@@ -56,7 +56,9 @@ def integrate(
     known = (*METHODS, *LAST_RESORTS)
     if method not in known:
         raise ValueError(f"expected a method out of {', '.join(known)}, found {method!r}")
-    if not isfinite(start.dot(start)) and not np.isfinite(start).all():  # the former is quick, but may overflow
+    with np.errstate(over="ignore"):
+        quick = start.dot(start)  # may overflow
+    if not isfinite(quick) and not np.isfinite(start).all():
         raise ValueError("expected a finite initial state, found infinities or NaN; check the start of the scene")
     tolerance = np.empty(start.shape)
     if isinstance(atol, float):
