@@ -24,6 +24,7 @@ try:
 except ImportError:
     atheris = None
 
+MOST_MEMORY = 4096  # MiB; the courses of two driven ends may be half a GiB each, and are several while they are made
 SLOW, SLOW_WHEN_FOLLOWED = 1.0, 10.0  # seconds of the processor; atheris makes all it follows some ten times slower
 OTHERS = ('"', '"""', "\n", "\r\n", " ", "\t", "\0", "\ufeff", "\u0435", "\u200d", "\uff11", "\u2028", "\x85")
 
@@ -140,5 +141,6 @@ def led(
         atheris.instrument_func(function)
     for i, seed in enumerate(seeds):
         (Path(folder) / str(i)).write_bytes(seed)
-    atheris.Setup([sys.argv[0], "-verbosity=0", "-max_len=4000", f"-artifact_prefix={folder}/", folder], one)
+    bounds = ["-max_len=4000", f"-rss_limit_mb={MOST_MEMORY}"]
+    atheris.Setup([sys.argv[0], "-verbosity=0", *bounds, f"-artifact_prefix={folder}/", folder], one)
     atheris.Fuzz()
