@@ -64,7 +64,7 @@ def environment(tool: str) -> dict[str, str]:
         **os.environ,
         "CC": f"{tool} {FLAGS}",
         "LD_PRELOAD": " ".join(found),
-        "ASAN_OPTIONS": "detect_leaks=0:abort_on_error=1",
+        "ASAN_OPTIONS": "detect_leaks=0:abort_on_error=1:allocator_may_return_null=1",
         "UBSAN_OPTIONS": "print_stacktrace=1",
         "OPENBLAS_NUM_THREADS": "1",
     }
