@@ -23,7 +23,7 @@ LEVEL = "-O1"
 
 DEFAULT = (
     "tests/solver", "tests/statics", "tests/kernel", "tests/codegen", "tests/physics", "tests/hard", "tests/passivity",
-    "tests/results",
+    "tests/results", "tests/discretisation", "tests/planning",
     *sorted(f"tests/{path.name}" for path in (Path(__file__).parents[1] / "tests").glob("test_*.py")),
 )  # fmt: skip
 WRONG = {
