@@ -37,21 +37,22 @@ QUIET, LOOKED = 2.0, 6.0
 
 PARTS = {
     "rates": (
-        "rod_rate rod_rate_lanes drive_lanes stresses move strain_rates strain_rates_lanes orient orient_lanes circle "
-        "evaluate evaluate_stages problem_slopes"
+        "rod_rate rod_rate_lanes drive_lanes stresses stresses_lanes gather_lanes move move_lanes strain_rates "
+        "strain_rates_lanes orient orient_lanes circle march_element_lanes solve_turns_lanes take_rows_lanes "
+        "multiply_lanes evaluate evaluate_stages problem_slopes"
     ),
     "Jacobians": (
-        "rod_blocks rod_dense problem_dense responses world_responses answers drive march_element factor_dense "
+        "rod_blocks rod_dense problem_dense responses world_responses answers drive march_element solve_turns take_rows "
+        "differentiate_march add_product subtract factor_dense "
         "linearise __memset_avx512_unaligned_erms __memset_avx2_unaligned_erms"
     ),
     "reductions": "condense reduce factor_bound factor solve multiply",
-    "linear solves": "solve_shifted solve_all add_stages",
+    "linear solves": "solve_shifted untwist twist solve_all add_stages",
     "Newton and steps": (
         "solve_stages newton shift step error_of predict squares accept radau_go radau_start radau_new advance"
     ),
 }
-"""Functions in C, by what they are for. Of an inlined one the time is that of its caller. Poses are marched for rates
-and for Jacobians alike: in space all of that is counted with the latter."""
+"""Functions in C, by what they are for. Of an inlined one the time is that of its caller."""
 REST = "Python and system"
 
 

@@ -60,14 +60,14 @@ def test_a_ring_that_leaves_its_plane_is_not_left_in_it(frozen: list[str], metho
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("method", LAST_RESORTS)
+@pytest.mark.parametrize("method", [*LAST_RESORTS, "lsoda"])
 def test_a_ring_on_its_way_out_of_its_plane_is_where_it_says(method: str) -> None:
     """What grows from a millionth is not seen by a first run of few steps, and by the next one too early."""
     scene = next(case.scene for case in unstable() if "halfway out" in case.name)
     found = geocosserat.run(scene, settings=[f"run.method={method}"])
     known = geocosserat.run(scene, settings=["run.accuracy=1e-6", "run.method=cvode", "run.frames=2"])
     assert known.reached
-    assert found.error["estimated"] > apart(load_any(scene), found.solution, known.solution)
+    assert found.error["estimated"] + 1e-6 > apart(load_any(scene), found.solution, known.solution)
     assert found.reached or found.reason
 
 
