@@ -42,8 +42,8 @@ PARTS = {
         "multiply_lanes evaluate evaluate_stages problem_slopes"
     ),
     "Jacobians": (
-        "rod_blocks rod_dense problem_dense responses world_responses answers drive march_element solve_turns take_rows "
-        "differentiate_march add_product subtract factor_dense "
+        "rod_blocks rod_dense problem_dense responses world_responses answers drive march_element solve_turns "
+        "take_rows differentiate_march add_product subtract factor_dense "
         "linearise __memset_avx512_unaligned_erms __memset_avx2_unaligned_erms"
     ),
     "reductions": "condense reduce factor_bound factor solve multiply",
