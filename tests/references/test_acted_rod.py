@@ -8,6 +8,7 @@ from scipy.spatial.transform import Rotation
 
 from tests.references import acted_rod, moving_rod, sliding_helix
 from tests.references.acted_rod import Collocation, End, Rod
+from tests.references.derivatives import assert_derivatives
 from tests.references.moving_rod import rotated
 
 STIFFNESS, FRICTION = np.diag([60.0, 50.0, 40.0, 0.9, 1.2, 1.0]), np.diag([1.5, 2.0, 1.8, 0.03, 0.02, 0.025])
@@ -73,10 +74,4 @@ def test_at_rest_nothing_is_left_of_its_equations(left: str, right: str) -> None
     fine = Collocation(rod, 18)
     assert np.abs(fine.residual(0.0, fine.begin())).max() < 1e-6  # of rates that are 1e2 for a strain of 1 %
     equations = Collocation(rod, 6)
-    y = equations.begin()
-    step = 1e-6 * np.eye(y.size)
-    for function, jacobian in zip(
-        (equations.moved, lambda y: equations.residual(0.0, y)), equations.jacobians(0.0, y), strict=True
-    ):
-        differences = (function(y + step) - function(y - step)).T / 2e-6
-        np.testing.assert_allclose(jacobian, differences, atol=1e-6 * np.abs(jacobian).max())
+    assert_derivatives(equations, equations.begin(), 1e-6)

@@ -5,6 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from tests.references import moving_rod, relaxing_cantilever, static_rod
+from tests.references.derivatives import assert_derivatives
 from tests.references.moving_rod import Collocation, Rod, conjugate, product, rotated, solve
 
 STIFFNESS = np.diag([60.0, 40.0, 30.0, 0.8, 1.2, 1.0])
@@ -68,13 +69,7 @@ def test_an_equilibrium_does_not_move() -> None:
 def test_the_jacobians_are_derivatives() -> None:
     """Against central differences."""
     equations = Collocation(ROD, 6)
-    y = equations.begin()
-    step = 1e-6 * np.eye(y.size)
-    for function, jacobian in zip(
-        (equations.moved, lambda y: equations.residual(0.0, y)), equations.jacobians(0.0, y), strict=True
-    ):
-        differences = (function(y + step) - function(y - step)).T / 2e-6
-        np.testing.assert_allclose(jacobian, differences, atol=1e-7 * np.abs(jacobian).max())
+    assert_derivatives(equations, equations.begin(), 1e-7)
 
 
 @pytest.mark.slow

@@ -5,6 +5,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from tests.references import axial_twist, cantilever_modes, chebyshev
+from tests.references.derivatives import assert_derivatives
 from tests.references.relaxing_cantilever import Array, Collocation, Rod, solve
 
 
@@ -38,11 +39,7 @@ def test_the_rates_balance_force_and_moment_in_the_world() -> None:
 def test_the_jacobians_are_derivatives() -> None:
     """Against central differences at a bent and stretched state."""
     equations = Collocation(SOFT, 12)
-    state, step = equations.start() + 0.01 * np.sin(np.arange(33.0)), 1e-6 * np.eye(33)
-    functions = (equations.moved, lambda y: equations.residual(0.0, y))
-    for function, jacobian in zip(functions, equations.jacobians(0.0, state), strict=True):
-        differences = (function(state + step) - function(state - step)).T / 2e-6
-        np.testing.assert_allclose(jacobian, differences, atol=1e-8 * np.abs(jacobian).max())
+    assert_derivatives(equations, equations.start() + 0.01 * np.sin(np.arange(33.0)), 1e-8)
 
 
 def test_small_motions_decay_at_the_rates_of_the_linear_theory() -> None:
