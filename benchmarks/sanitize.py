@@ -1,5 +1,8 @@
 """All compiled code under the sanitisers of the compiler: python -m benchmarks.sanitize [what pytest is to run].
 
+Let it run alone, without pytest's -n: workers have threads, and the AddressSanitizer of gcc 12, unlike malloc itself,
+is not ready for a fork while another thread allocates: what is forked then waits for ever.
+
 Kernels and integrators are compiled with AddressSanitizer and UndefinedBehaviorSanitizer and the tests run on them; the
 first access outside of its array, use after it was freed, or undefined operation ends the run with a report. By default
 all tests that run compiled code and do not take long; Python itself and its libraries are not instrumented, and what

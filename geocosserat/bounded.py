@@ -76,9 +76,9 @@ def _in_child(work: Callable[[], Any], sender: Connection, seconds: float, memor
     try:
         signal.signal(signal.SIGINT, signal.SIG_IGN)  # whoever waits for it ends it
         signal.signal(signal.SIGTERM, signal.SIG_DFL)
-        _silence()
         signal.signal(signal.SIGALRM, signal.SIG_DFL)  # ends it if its parent was killed and cannot do so
         signal.setitimer(signal.ITIMER_REAL, min(seconds, _LONGEST) + 1)
+        _silence()
         _limit(memory)
         sender.send_bytes(_answer(work, memory))
         sender.close()

@@ -108,10 +108,13 @@ def test_ends_driven_at_both_sides_go_where_their_twists_take_them(scene: Scene,
 @pytest.mark.parametrize(("elements", "degree"), MESHES)
 @pytest.mark.parametrize("seeing", [False, True], ids=["blind", "heavy"])
 def test_the_strains_of_a_shaken_rod_repeat_however_long_it_is_shaken(elements: int, degree: int, seeing: bool) -> None:
-    """After 200 periods as after 20, whether it sees the world or not: nothing strays."""
+    """After 200 periods as after 20, whether it sees the world or not: nothing strays.
+
+    Strains at an end are off by up to a hundred tolerances of CVODE, by chance and however long the run was.
+    """
     scene = _shaken() if seeing else _shaken(effects=[])
     early, late = (
-        simulate(changed(scene, {"run.until": float(n)}), elements, degree, 1e-8, backend="c").solution.turn[-1]
+        simulate(changed(scene, {"run.until": float(n)}), elements, degree, 1e-9, backend="c").solution.turn[-1]
         for n in (PERIODS // 10, PERIODS)
     )
     assert gap(late, early) < 1e-6
