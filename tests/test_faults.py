@@ -82,6 +82,13 @@ def test_losses_are_counted_and_told(ground: Ground, capsys: pytest.CaptureFixtu
     assert "LOST: burnt: everything" in capsys.readouterr().out
 
 
+def test_trials_in_which_nothing_struck_are_not_counted(ground: Ground) -> None:
+    """Others are made for them, but not without end; a loss counts in any case."""
+    outcomes = iter([Outcome("missed", struck=False), Outcome("hit"), Outcome("missed", "all", struck=False)])
+    assert tried(ground, lambda *_: next(outcomes), 2, random.Random(0)) == ({"hit": 1, "missed": 1}, ["missed: all"])
+    assert tried(ground, lambda *_: Outcome("missed", struck=False), 2, random.Random(0)) == ({}, [])
+
+
 @pytest.mark.parametrize("name", ["position", "estimated"])
 def test_a_difference_is_named(name: str, ground: Ground) -> None:
     """In an array, or in what is said of it."""

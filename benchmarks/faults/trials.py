@@ -41,10 +41,12 @@ WRONG_INPUT, NOT_REACHED = 2, 3
 
 @dataclass(frozen=True)
 class Outcome:
-    """What happened, in a word or two, and what is wrong with it."""
+    """What happened, in a word or two, and what is wrong with it; and whether the fault struck at all: a run may come
+    to its end before, or a disk have room."""
 
     what: str
     lost: str = ""
+    struck: bool = True
 
 
 @dataclass(frozen=True)
@@ -123,7 +125,7 @@ def killed(
                 return Outcome("ended", f"{case.name}: a wrong solution was left")
         if code == 0:
             what = "came to its end from a checkpoint" if resumed else "came to its end before"
-            return Outcome(what, wrong_with(out, expected.solution))
+            return Outcome(what, wrong_with(out, expected.solution), struck=resumed > 0)
         more = going_on(out) if out.exists() else []
         code = finished([*case.arguments(out), *more], ground.said, case.prepare)
         if code:
@@ -172,7 +174,7 @@ def _over_an_older_run(ground: Ground, case: Case, prepare: Callable[[], None], 
         if not new and differences(found, before.solution):
             return Outcome("wrote", "a solution that is neither the old one nor the new one")
         if code == 0:
-            return Outcome("there was room", wrong_with(out, expected.solution))
+            return Outcome("there was room", wrong_with(out, expected.solution), struck=False)
         said = [line for line in ground.said.read_text().splitlines() if "no checkpoint could be written" not in line]
         if code != WRONG_INPUT or len(said) != 1 or not said[0].startswith("geocosserat: "):
             return Outcome("refused", f"code {code}, said {said[-3:]}")
@@ -221,13 +223,13 @@ def full_disk(ground: Ground, chance: random.Random) -> Outcome:
     need = sum(path.stat().st_size for path in expected.folder.iterdir())
     with ground.new() as folder, _mounted(folder.with_name("disk"), chance.randrange(4096, int(1.5 * need))) as mounted:
         if not mounted:
-            return Outcome("no right to mount")
+            return Outcome("no right to mount", struck=False)
         disk = folder.with_name("disk")
         out = disk / "out"
         code = finished(case.arguments(out), ground.said, case.prepare)
         said = [line for line in ground.said.read_text().splitlines() if "no checkpoint could" not in line]
         if code == 0:
-            return Outcome("there was room", wrong_with(out, expected.solution))
+            return Outcome("there was room", wrong_with(out, expected.solution), struck=False)
         if code != WRONG_INPUT or len(said) != 1:
             return Outcome("refused", f"code {code}, said {said[-3:]}")
         _remount(disk, f"size={10 * need}")
@@ -251,7 +253,7 @@ def read_only(ground: Ground, chance: random.Random) -> Outcome:
         if mounted:
             _remount(above, "ro")
         elif os.getuid() == 0:  # whom no mode stops
-            return Outcome("no right to mount")
+            return Outcome("no right to mount", struck=False)
         for path in () if mounted else (out, above) if inside else (above,):
             path.chmod(0o555)
         code = finished([*case.arguments(out), "--overwrite"], ground.said, case.prepare)
