@@ -1,12 +1,11 @@
-"""All compiled code under the sanitisers of the compiler: python -m benchmarks.sanitize [what pytest is to run].
-
-Let it run alone, without pytest's -n: workers have threads, and the AddressSanitizer of gcc 12, unlike malloc itself,
-is not ready for a fork while another thread allocates: what is forked then waits for ever.
+"""All compiled code under the sanitisers of the compiler: python -m benchmarks.sanitize [words for pytest].
 
 Kernels and integrators are compiled with AddressSanitizer and UndefinedBehaviorSanitizer and the tests run on them; the
-first access outside of its array, use after it was freed, or undefined operation ends the run with a report. By default
-all tests that run compiled code and do not take long; Python itself and its libraries are not instrumented, and what
-they leave allocated is not looked at. Whether the sanitisers are at work at all is tried first, with wrong code.
+first access outside of its array, use after it was freed, or undefined operation ends the run with a report. Tests that
+take long are left out unless it is asked for them (`-m slow`). Python itself and its libraries are not instrumented,
+and what they leave allocated is not looked at. Whether the sanitisers are at work at all is tried first, with wrong
+code. Not for workers of `-n`: they have threads, and the AddressSanitizer of gcc 12, unlike malloc itself, is not ready
+for a fork while another thread allocates; what is forked then waits for ever.
 """
 
 from __future__ import annotations
@@ -24,11 +23,6 @@ RUNTIMES = ("libasan.so", "libubsan.so")
 LEVEL = "-O1"
 """Of the optimiser, as the sanitisers' authors advise: the checks are the same, compiled in a sixth of the time."""
 
-DEFAULT = (
-    "tests/solver", "tests/statics", "tests/kernel", "tests/codegen", "tests/physics", "tests/hard", "tests/passivity",
-    "tests/results", "tests/discretisation", "tests/planning",
-    *sorted(f"tests/{path.name}" for path in (Path(__file__).parents[1] / "tests").glob("test_*.py")),
-)  # fmt: skip
 WRONG = {
     "outside of its array": ("double f(int n) { double *a = calloc(4, 8); return a[n]; }", 4),
     "undefined": ("double f(int n) { return (double)(n + 2147483647); }", 1),
@@ -98,8 +92,7 @@ def main() -> None:
     if tool is None:
         sys.exit("expected gcc on the path, with its sanitisers, found none; install it")
     root = Path(__file__).parents[1]
-    asked = sys.argv[1:] or [*DEFAULT]
-    command = [sys.executable, "-m", "pytest", "--capture=sys", *asked]  # a report goes to the terminal
+    command = [sys.executable, "-m", "pytest", "--capture=sys", *sys.argv[1:]]  # a report goes to the terminal
     with tempfile.TemporaryDirectory() as folder:
         tool = light(tool, Path(folder))
         missed = unnoticed(tool)

@@ -17,8 +17,9 @@ SCENE = ROOT / "examples" / "cantilever.toml"
 
 
 def _run(*command: str | Path, cwd: Path, **environment: str) -> str:
-    """Standard output of a command that must succeed; of this environment it sees the search path and CC only."""
-    kept = {name: os.environ[name] for name in ("PATH", "CC") if name in os.environ}
+    """Standard output of a command that must succeed; of this environment it sees only the search path, and CC with
+    what benchmarks/sanitize.py sets beside it."""
+    kept = {name: os.environ[name] for name in ("PATH", "CC", "LD_PRELOAD", "ASAN_OPTIONS") if name in os.environ}
     environment = kept | environment
     done = subprocess.run(command, cwd=cwd, env=environment, capture_output=True, text=True, timeout=300, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
