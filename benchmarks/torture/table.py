@@ -45,11 +45,11 @@ def table(verdicts: Sequence[Verdict]) -> str:
 
 def _reasons(verdicts: Sequence[Verdict]) -> Iterator[str]:
     """Each outcome and reason once, the methods it is of, and the cases: but for failures, reasons that differ in
-    numbers alone are one, told with those of the first case."""
+    numbers alone are one, told without these."""
     for of_kind in _grouped(verdicts, lambda v: (v.outcome, v.why if v.outcome == FAILED else _words(v))):
         by_case = _grouped(of_kind, lambda v: v.case)
         by_methods = _grouped(by_case, lambda own: ", ".join(v.method for v in own))
-        yield f"* {of_kind[0].outcome}: {_reason(of_kind[0]) or 'no reason'}"
+        yield f"* {of_kind[0].outcome}: {_common(of_kind) or 'no reason'}"
         for own in by_methods:
             yield f"  * {', '.join(v.method for v in own[0])} ({len(own)}): {'; '.join(of[0].case for of in own)}"
 
@@ -58,6 +58,13 @@ def _reason(verdict: Verdict) -> str:
     """All of a failure's; of others, the cause alone if one is told, not what each solver said before it."""
     cause = None if verdict.outcome == FAILED else EXPECTED.search(verdict.why)
     return verdict.why[cause.start() :] if cause else verdict.why
+
+
+def _common(verdicts: Sequence[Verdict]) -> str:
+    """The reason that they share but for numbers, with … for each number that they do not."""
+    each = ([numeral.group() for numeral in NUMERAL.finditer(_reason(v))] for v in verdicts)
+    shown = iter([of[0] if len({*of}) == 1 else "…" for of in zip(*each, strict=True)])
+    return NUMERAL.sub(lambda _: next(shown), _reason(verdicts[0]))
 
 
 def _words(verdict: Verdict) -> str:

@@ -154,7 +154,7 @@ def test_the_table_counts_every_verdict() -> None:
 
 
 def test_the_table_tells_a_reason_once() -> None:
-    """Whatever its numbers; names of cases and methods stay apart."""
+    """Without numbers that differ; names of cases and methods stay apart."""
     some = [
         Verdict("a", "auto", CUT_OFF, "it took more than 180 seconds"),
         Verdict("a", "bdf", CUT_OFF, "it took more than 60 seconds"),
@@ -165,7 +165,7 @@ def test_the_table_tells_a_reason_once() -> None:
         Verdict("e", "bdf", CUT_OFF, "it took more than 60 seconds"),
     ]
     assert table(some).splitlines()[-8:] == [
-        "* cut off: it took more than 180 seconds",
+        "* cut off: it took more than … seconds",
         "  * auto, bdf (1): a",
         "  * bdf (2): b; e",
         "  * auto (1): d",
