@@ -35,8 +35,8 @@ def _about(stress: Vector, group: Group, names: Names, reference: Vector) -> Mat
 
 
 def read_friction(rod: Table, group: Group, names: Names, law: Law | None) -> Matrix:
-    """Γ, positive definite, but for rotations whose row and column are literally zero: those have no friction. That of
-    the law if the rod has none of its own."""
+    """Γ, positive definite, but for rotations whose row and column are zero whatever the parameters are: those have no
+    friction, and the number 0 there. That of the law if the rod has none of its own."""
     place, values = rod.at("friction")
     if "friction" not in rod and law is not None and law.friction is not None:
         place, friction = rod.at("law")[0].at("friction"), law.friction
@@ -46,11 +46,12 @@ def read_friction(rod: Table, group: Group, names: Names, law: Law | None) -> Ma
     rows = [[friction[i][j] for j in damped] for i in damped]
     hint = "every motion must be damped; only a rotation may go without, by the number 0 in its whole row"
     check_positive(place, rows, names, [group.twist[i] for i in damped], hint)
-    return friction
+    every = range(group.dimension)
+    return tuple(tuple(friction[i][j] if i in damped and j in damped else Number(0.0) for j in every) for i in every)
 
 
 def _zero(m: Matrix, i: int) -> bool:
-    """Whether row and column i are literally zero, whatever the parameters are."""
+    """Whether row and column i come to zero without any name in them."""
     return all(constant(e) == 0.0 for e in (*m[i], *(row[i] for row in m)))
 
 

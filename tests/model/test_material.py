@@ -88,6 +88,13 @@ def test_a_rotation_may_have_no_friction() -> None:
         assert [model.friction[i][i] == Number(0.0) for i in range(6)] == [i in zeros for i in range(6)]
 
 
+@pytest.mark.parametrize("nothing", ["1e-2*(1 - 1)", "-0", -0.0, "sin(0)"])
+def test_no_friction_may_be_written_as_any_zero(nothing: object) -> None:
+    """The model is that of the number 0, by which all else knows rotations without friction."""
+    assert load(("rod.friction.2", nothing)).model == load(("rod.friction.2", 0)).model
+    assert load(("rod.friction.2", nothing)).model.friction[2] == (Number(0.0),) * 3
+
+
 def test_what_rotations_have_friction_may_be_coupled() -> None:
     """A full matrix with one row and column of zeros; the rest must still be positive definite."""
     rows = [[1 + i if i == j else 0.0 for j in range(6)] for i in range(6)]
