@@ -25,9 +25,9 @@ def test_a_cause_is_told_once_whatever_each_solver_said_before_it() -> None:
 
 
 def test_reasons_that_differ_in_numbers_alone_are_one() -> None:
-    """Told with those of the first case."""
-    told = _told(Verdict("a", "radau", CUT_OFF, "more than 60 s"), Verdict("b", "radau", CUT_OFF, "more than 180 s"))
-    assert told == ["* cut off: more than 60 s", "  * radau (2): a; b"]
+    """Told without these, but with what is the same in both."""
+    told = _told(Verdict("a", "radau", CUT_OFF, "60 s, 4 GiB"), Verdict("b", "radau", CUT_OFF, "180 s, 4 GiB"))
+    assert told == ["* cut off: … s, 4 GiB", "  * radau (2): a; b"]
 
 
 def test_failures_are_told_one_by_one_and_whole() -> None:
