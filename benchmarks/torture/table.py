@@ -68,7 +68,7 @@ def _common(verdicts: Sequence[Verdict]) -> str:
 
 
 def _words(verdict: Verdict) -> str:
-    return NUMERAL.sub("", _reason(verdict))
+    return NUMERAL.sub("…", _reason(verdict))
 
 
 def _grouped(things: Sequence[T], key: Callable[[T], object]) -> list[list[T]]:
